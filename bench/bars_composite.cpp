@@ -81,7 +81,7 @@ void wrong_rays(BarTable& table, const runtime::Field& field, const RayClass& ra
 void tiers(BarTable& table, const runtime::Field& field, const RayClass& rays) {
   const runtime::MarchCounters counters = runtime::march(field, rays.rays).counters;
   table.none("B7", fmt::format("H, {}: rays given up, invalid or in contact", rays.name),
-             counters.exhausted + counters.invalid + counters.contacts, counters.rays);
+             counters.exhausted + counters.invalid + counters.near_misses, counters.rays);
   table.at_most("B7", fmt::format("H, {}: share of rays decided in double", rays.name), 0.2,
                 100 * static_cast<double>(counters.certified) / static_cast<double>(counters.rays), " %");
 }

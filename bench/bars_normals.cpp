@@ -170,7 +170,7 @@ std::size_t self_hits(const char* node, std::size_t count, std::size_t& tried) {
     std::vector<runtime::Ray> rays;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const dvec3 direction = random_hemisphere(random, dvec3(points[i].normal));
-      runtime::Ray ray{runtime::spawn(found.hits[i], points[i], false), direction};
+      runtime::Ray ray{runtime::spawn_origin(found.hits[i], points[i], false), direction};
       ray.side = found.hits[i].side;
       ray.slope = static_cast<float>(glm::dot(dvec3(points[i].normal), direction));
       rays.push_back(ray);

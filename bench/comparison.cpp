@@ -28,7 +28,7 @@ double seconds_of(const std::function<void()>& run, bool wall) {
 }
 
 void time_rounds(benchmark::State& state, const Comparison& row) {
-  std::optional<runtime::Pinned> pinned;
+  std::optional<runtime::PinnedThread> pinned;
   if (!row.wall) pinned.emplace();
   row.ours();
   row.theirs();

@@ -71,7 +71,7 @@ class Scene {
     }
   }
 
-  void compare(const std::string& name, double least_gain, int rounds) const {
+  void compare(const std::string& name, double min_gain, int rounds) const {
     for (std::size_t i = 0; i < sets_.size(); ++i) {
       const runtime::RaySet& set = sets_[i];
       if (set.ray_class == "grazing") continue;
@@ -79,10 +79,10 @@ class Scene {
       add({.name = name + ", " + set.ray_class,
            .unit = "ns a ray",
            .per_unit = 1e9 / rays,
-           .most = 1 / least_gain,
+           .most = 1 / min_gain,
            .rounds = rounds,
-           .ours = [&] { follow(cut_, set.rays); },
-           .theirs = [this, i] { follow(whole_, shares_[i]); },
+           .ours = [&] { march_each(cut_, set.rays); },
+           .theirs = [this, i] { march_each(whole_, shares_[i]); },
            .note = [this, &set] { return describe(set); },
            .theirs_times = rays / some});
     }
@@ -101,22 +101,22 @@ class Scene {
     return *std::move(scene);
   }
 
-  static void follow(const runtime::Field& field, std::span<const runtime::Ray> rays) {
+  static void march_each(const runtime::Field& field, std::span<const runtime::Ray> rays) {
     std::size_t hits = 0;
-    runtime::follow(field, rays, {},
+    runtime::march_each(field, rays, {},
                     [&](const runtime::RayHit& a) { hits += a.status == runtime::RayHit::Status::Hit; });
     benchmark::DoNotOptimize(hits);
   }
 
   std::string describe(const runtime::RaySet& set) const {
-    const runtime::Regions::Facts& facts = cut_.regions->facts();
+    const runtime::Regions::Summary& summary = cut_.regions->summary();
     const auto a = runtime::march(cut_, set.rays).counters;
     return fmt::format(
         "{:.1f} evaluations of {:.1f} instructions a ray; built in {:.3f} s on one thread, {:.1f} MB, {} far cells, "
         "{} programs of {} skeletons",
         static_cast<double>(a.evaluations) / static_cast<double>(a.rays),
-        static_cast<double>(a.instructions) / static_cast<double>(a.evaluations), facts.seconds,
-        static_cast<double>(facts.bytes) * 1e-6, facts.far, facts.programs, facts.skeletons);
+        static_cast<double>(a.instructions) / static_cast<double>(a.evaluations), summary.seconds,
+        static_cast<double>(summary.bytes) * 1e-6, summary.far, summary.programs, summary.program_templates);
   }
 
   compiler::CompiledScene scene_;

@@ -54,7 +54,7 @@ constexpr Farm kFarms[] = {{"cluster", 1, 200, 24 * 30, 300, 20'000, 5e9, 600},
 constexpr double kUnitSeconds[] = {15, 30, 60, 120, 300, 600, 1800};
 constexpr double kMinutes[] = {10, 60, 480};  // of work per machine
 constexpr int kMachines[] = {10'000, 100};
-constexpr std::uint64_t kMostUnits = 20'000'000;  // max number of simulated units
+constexpr std::uint64_t kMaxUnits = 20'000'000;  // max number of simulated units
 
 struct Tally {
   double end = 0;  // seconds
@@ -247,7 +247,7 @@ struct Job {
 void simulate(const Farm& farm, const Job& job, double unit_seconds, const char* mark) {
   cli::PlanGrid grid = job.grid;
   cut(grid, false, job.frame_seconds(), unit_seconds);
-  if (grid.units() > kMostUnits) return;
+  if (grid.units() > kMaxUnits) return;
   std::vector<double> costs;
   for (std::uint64_t number = 0; number < grid.units_of_frame(); ++number) {
     const cli::PlanUnit unit = unit_of(grid, number);
@@ -280,7 +280,7 @@ void simulate(const Farm& farm, const Job& job) {
              farm.name);
   fmt::print("unit s longest     units  seconds  ratio start% lost% wait% disk%      GB merge min\n");
   for (const double seconds : kUnitSeconds) simulate(farm, job, seconds, "");
-  simulate(farm, job, cli::usual_unit_seconds(job.all_seconds(), job.machines), "fathom plan");
+  simulate(farm, job, cli::default_unit_seconds(job.all_seconds(), job.machines), "fathom plan");
 }
 
 void run(const std::string& path) {

@@ -100,7 +100,7 @@ class ShadowRenderer {
         free_.push_back(hit_slots_[i]);
         continue;
       }
-      const Ray ray = leave(hits_[i], points_[i], light_, false);
+      const Ray ray = spawn_ray(hits_[i], points_[i], light_, false);
       slot.ray.origin = ray.origin;
       slot.ray.direction = ray.direction;
       slot.shadow = true;
@@ -116,7 +116,7 @@ class ShadowRenderer {
   std::unique_ptr<Marcher> marcher_;
   std::size_t next_ = 0;  // next pixel to start
   int x_ = 0, y_ = 0;     // coordinates of that pixel
-  std::array<Slot, Marcher::kMostRays> slots_;
+  std::array<Slot, Marcher::kMaxRays> slots_;
   std::vector<std::uint32_t> free_;
   std::vector<RayHit> ray_hits_;
   std::array<Hit, kSurfaceBatch> hits_;
@@ -138,7 +138,7 @@ Picture fathom_paths(const compiler::CompiledScene& scene, const Frame& frame) {
   options.height = frame.height;
   options.spp = frame.spp;
   options.layers = {.first_hit = false};
-  options.max_depth = kMostBounces;
+  options.max_depth = kMaxBounces;
   const RenderResult result = render(scene, options);
   Picture picture{result.stats.march.rays, result.stats.primary_hits, {}};
   for (int y = 0; y < frame.height; ++y) {

@@ -67,7 +67,7 @@ T composite(const Point<T>& p) {
 
 Interval along(double origin, double direction, Interval t) { return Interval(origin) + t * Interval(direction); }
 
-struct Part {
+struct PrunedProgram {
   double begin, end;
   int sign_at_begin, sign_at_end;  // signs of side * f; 0 when rounding hides the sign
 };
@@ -86,7 +86,7 @@ class Search {
     if (side_ == 0) return {Solution::Status::Undecided};
     parts_.push_back({0, t_max, 1, sign(sample(t_max).f)});
     while (!parts_.empty()) {
-      const Part part = parts_.back();
+      const PrunedProgram part = parts_.back();
       parts_.pop_back();
       if (const auto root = settle(part)) return *root;
     }
@@ -103,7 +103,7 @@ class Search {
   }
 
   // Returns side * f and its derivative over [begin, end].
-  Jet over(const Part& part) const {
+  Jet over(const PrunedProgram& part) const {
     const Interval t(part.begin, part.end);
     const auto coordinate = [&](int i) {
       return Jet(along(line_.origin[i], line_.direction[i], t), Interval(line_.direction[i]));
@@ -114,7 +114,7 @@ class Search {
 
   // Returns the first root of the part when the part can be decided. Otherwise drops the part, leaves it open, or
   // splits it in two.
-  std::optional<Solution> settle(const Part& part) {
+  std::optional<Solution> settle(const PrunedProgram& part) {
     const Jet f = over(part);
     const bool changes = part.sign_at_begin > 0 && part.sign_at_end < 0;
     if (f.v.lo > 0) return std::nullopt;
@@ -137,7 +137,7 @@ class Search {
   }
 
   // Returns a sample near the middle at which the sign can be decided.
-  Sample split(const Part& part) const {
+  Sample split(const PrunedProgram& part) const {
     for (const double share : {0.5, 0.4375, 0.5625}) {
       const Sample s = sample(part.begin + share * (part.end - part.begin));
       if (sign(s.f) != 0) return s;
@@ -145,7 +145,7 @@ class Search {
     return sample(part.begin + 0.5 * (part.end - part.begin));
   }
 
-  std::optional<Solution> bisect(Part part) const {
+  std::optional<Solution> bisect(PrunedProgram part) const {
     while (part.end - part.begin > kFinest) {
       const double middle = part.begin + (part.end - part.begin) / 2;
       const int s = sign(sample(middle).f);
@@ -159,7 +159,7 @@ class Search {
 
   const Line& line_;
   int side_ = 1;
-  std::vector<Part> parts_;  // in order along the ray, the nearest last
+  std::vector<PrunedProgram> parts_;  // in order along the ray, the nearest last
   bool open_ = false;
 };
 

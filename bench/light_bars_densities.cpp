@@ -9,7 +9,7 @@
 #include "runtime/sampling/filter.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/environments.h"
-#include "tests/support/lamp_patches.h"
+#include "tests/support/area_light_patches.h"
 #include "tests/support/materials.h"
 
 namespace fathom::bench {
@@ -71,9 +71,9 @@ Group visible_normals(int samples) {
       group.pairs.push_back({fmt::format("alpha {}, cos {}", alpha, cos), [=] {
                                const runtime::Ggx ggx(alpha);
                                const glm::vec3 wo(std::sqrt(1 - cos * cos), 0, cos);
-                               const auto sample = [&](Sampler& s) { return ggx.sample_visible(wo, s.next2()); };
+                               const auto sample = [&](Sampler& s) { return ggx.sample_visible_normal(wo, s.next2()); };
                                const auto pdf = [&](glm::vec3 m) {
-                                 return m.z > 0 ? static_cast<double>(ggx.visible_pdf(wo, m)) : 0.0;
+                                 return m.z > 0 ? static_cast<double>(ggx.visible_normal_pdf(wo, m)) : 0.0;
                                };
                                return test::chi_square(sample, pdf, setup_of(samples, {0, 0, 1}, seed));
                              }});
@@ -91,13 +91,13 @@ Group hemisphere(int samples) {
   return {"hemisphere by cosine", {{"hemisphere", test}}};
 }
 
-Group lamps(int samples) {
+Group area_lights(int samples) {
   Group group{"lamps of every shape from 4 places", {}};
-  for (const test::NamedLamp& lamp : test::kLamps) {
-    for (const glm::dvec3 from : test::kLampPlaces) {
+  for (const test::NamedAreaLight& area_light : test::kAreaLights) {
+    for (const glm::dvec3 from : test::kShadingPoints) {
       group.pairs.push_back(
-          {fmt::format("{} from ({}, {}, {})", lamp.name, from.x, from.y, from.z), [&lamp, from, samples] {
-             return test::lamp_chi_square(runtime::LampShape(lamp.lamp), from, samples, 96);
+          {fmt::format("{} from ({}, {}, {})", area_light.name, from.x, from.y, from.z), [&area_light, from, samples] {
+             return test::area_light_chi_square(runtime::AreaLightShape(area_light.area_light), from, samples, 96);
            }});
     }
   }
@@ -121,14 +121,14 @@ Group environments(int samples) {
                            to_disc, 36},
                           {"sky", test::kSky, {0, 1, 0}, 40},
                           {"picture", test::kPicture, {0, 1, 0}, 40}};
-  const runtime::LightQuery queries[] = {
+  const runtime::LightSampleContext queries[] = {
       {{0, 0, 0}, {0, 1, 0}}, {{0, 0, 0}, {0.6f, -0.48f, 0.64f}}, {{0, 0, 0}, {0, 0, 1}, true}};
   Group group{"what lies beyond the scene, for 3 surfaces", {}};
   for (const Beyond& c : cases) {
     const auto environment =
         std::make_shared<runtime::Environment>(compile_scene(c.json + ball), test::random_image(12, 6));
-    for (const runtime::LightQuery& query : queries) {
-      if (!(environment->estimate(query) > 0)) continue;  // the disc is behind the surface
+    for (const runtime::LightSampleContext& query : queries) {
+      if (!(environment->importance(query) > 0)) continue;  // the disc is behind the surface
       test::ChiSquareSetup setup = setup_of(samples, c.pole, 3000 + group.pairs.size());
       setup.rows = c.rows;
       setup.columns = 2 * c.rows;
@@ -238,7 +238,7 @@ Group lenses(int samples) {
 
 void density_bars(BarTable& table, const LightCounts& counts) {
   const int n = counts.chi_square_samples;
-  const Group groups[] = {materials(n),    visible_normals(n), hemisphere(n), lamps(n),
+  const Group groups[] = {materials(n),    visible_normals(n), hemisphere(n), area_lights(n),
                           environments(n), filters(n),         lenses(n)};
   int tests = 0;
   for (const Group& group : groups) tests += static_cast<int>(group.pairs.size());

@@ -15,7 +15,7 @@ namespace fathom::bench {
 namespace {
 
 using runtime::RenderOptions;
-using tests::LightScene;
+using test::LightScene;
 
 constexpr int kSide = 32;        // pixels
 constexpr double kRound = 2e-5;  // relative error from float and from the film's fixed point when nothing is random
@@ -86,15 +86,15 @@ void closed_rooms(const Furnaces& furnaces) {
       options.rr_depth = bounces;
       furnaces.row("B17",
                    fmt::format("P1: closed ball that glows, albedo {}, roulette from bounce {}", albedo, bounces),
-                   tests::closed_room(albedo), options);
+                   test::closed_room(albedo), options);
     }
   }
   furnaces.row("B17", "P1: closed box that glows, albedo 0.5",
-               tests::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"));
+               test::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"));
 }
 
 void even_light(const Furnaces& furnaces) {
-  LightScene grey = tests::in_even_light(R"({"type": "diffuse", "color": [0.6, 0.6, 0.6]})",
+  LightScene grey = test::in_even_light(R"({"type": "diffuse", "color": [0.6, 0.6, 0.6]})",
                                          R"("type": "box", "half_size": [3, 3, 0.5])");
   grey.radiance = 0.6;
   furnaces.row("B17", "P2: box of albedo 0.6 that fills the picture, in an even light", grey);
@@ -117,18 +117,18 @@ void even_light(const Furnaces& furnaces) {
       {"P2: white plastic, roughness 1", white + "1}"},
   };
   for (const auto& [what, material] : materials) {
-    furnaces.row("B17", fmt::format("{}, in an even light", what), tests::in_even_light(material));
+    furnaces.row("B17", fmt::format("{}, in an even light", what), test::in_even_light(material));
   }
 }
 
-void lamps(const Furnaces& furnaces) {
+void area_lights(const Furnaces& furnaces) {
   using runtime::LightSampling;
   const std::pair<const char*, LightScene> scenes[] = {
-      {"P3: under a ball", tests::under_ball(0.5, 0, 2)},
-      {"P3: under a ball aside", tests::under_ball(0.3, 1, 0.8)},
-      {"P4: under a disc", tests::under_disc(0.5, 1)},
-      {"P5: under a rectangle", tests::under_rectangle(0.4, 0.3, 0, 1)},
-      {"P5: under a rectangle aside", tests::under_rectangle(0.5, 0.2, 0.3, 0.6)},
+      {"P3: under a ball", test::under_ball(0.5, 0, 2)},
+      {"P3: under a ball aside", test::under_ball(0.3, 1, 0.8)},
+      {"P4: under a disc", test::under_disc(0.5, 1)},
+      {"P5: under a rectangle", test::under_rectangle(0.4, 0.3, 0, 1)},
+      {"P5: under a rectangle aside", test::under_rectangle(0.5, 0.2, 0.3, 0.6)},
   };
   for (const auto& [what, scene] : scenes) {
     for (const auto& [way, words] : {std::pair{LightSampling::Mis, "looking for it and hitting it"},
@@ -147,19 +147,19 @@ void furnace_bars(BarTable& table, const LightCounts& counts) {
   const Furnaces furnaces(table, counts.relative_sigma);
   closed_rooms(furnaces);
   even_light(furnaces);
-  lamps(furnaces);
+  area_lights(furnaces);
   for (const double albedo : {0.5, 0.9}) {
     for (const double degrees : {20.0, 40.0}) {
       RenderOptions options;
       // Starts Russian roulette early: few paths get out, so 40 bounces before it would cost far more.
       options.rr_depth = 2;
       furnaces.row("P6", fmt::format("P6: cavity of albedo {} with a hole of half angle {}", albedo, degrees),
-                   tests::cavity(albedo, degrees), options);
+                   test::cavity(albedo, degrees), options);
     }
   }
-  furnaces.row("P8", "P8: through a slab of glass", tests::slab());
+  furnaces.row("P8", "P8: through a slab of glass", test::slab());
   for (const double degrees : {0.0, 60.0, 120.0}) {
-    furnaces.row("P10", fmt::format("P10: Lambert's ball at phase angle {}", degrees), tests::moon(degrees));
+    furnaces.row("P10", fmt::format("P10: Lambert's ball at phase angle {}", degrees), test::moon(degrees));
   }
 }
 

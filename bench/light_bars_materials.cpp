@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "bench/light_bars.h"
-#include "runtime/material/energy.h"
+#include "runtime/material/directional_albedo.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/materials.h"
 
@@ -52,7 +52,7 @@ double albedo(const MaterialCase& c, float cos, int rows) {
 void ggx_table(BarTable& table) {
   double worst = 0, compensated = 0;
   for (const GgxRow& row : kGgx) {
-    const runtime::AlbedoRow lost = runtime::conductor_loss(row.alpha);
+    const runtime::DirectionalAlbedo lost = runtime::conductor_loss(row.alpha);
     for (std::size_t i = 0; i < 4; ++i) {
       const double found = 1 - static_cast<double>(lost.at(kGgxCosines[i]));
       worst = std::max(worst, std::abs(found - row.albedo[i]));

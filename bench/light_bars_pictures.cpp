@@ -170,7 +170,7 @@ void compare(BarTable& table, const Comparison& comparison, int pictures) {
 }  // namespace
 
 void picture_bars(BarTable& table, const LightCounts& counts) {
-  const Comparison comparisons[] = {{"room with lamps of every kind", tests::kLampRoom, 16, 96},
+  const Comparison comparisons[] = {{"room with lamps of every kind", test::kAreaLightRoom, 16, 96},
                                     {"box with a small lamp", kBox, 16, 96},
                                     {"outside under sky and sun", kOutside, 16, 96}};
   for (const Comparison& comparison : comparisons) compare(table, comparison, counts.pictures);

@@ -40,13 +40,13 @@ constexpr double kGoal = 1e-3;  // relMSE
 constexpr int kPilotSpp = 8;    // samples per pixel to estimate a scene's speed
 constexpr int kSpp = 32;        // samples per pixel of the default's longest image
 constexpr int kReference = 48;  // times the samples of the longest image
-constexpr ImageWay kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf};
-constexpr ImageWay kDefault{};
+constexpr ImageVariant kBefore{.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf};
+constexpr ImageVariant kDefault{};
 
 // Returns seconds per image and sample per pixel.
-double seconds_per_sample(const compiler::CompiledScene& scene, const ImageWay& way, const ImagePlan& plan) {
-  const Channels nothing(static_cast<std::size_t>(3 * plan.width * plan.height));
-  const ImagePoint points[] = {{way, kPilotSpp}, {way, 5 * kPilotSpp}};
+double seconds_per_sample(const compiler::CompiledScene& scene, const ImageVariant& variant, const ImagePlan& plan) {
+  const PixelValues nothing(static_cast<std::size_t>(3 * plan.width * plan.height));
+  const ImagePoint points[] = {{variant, kPilotSpp}, {variant, 5 * kPilotSpp}};
   ImagePlan pilot = plan;
   pilot.seeds = 3;
   const auto rows = measure_points(scene, points, pilot, nothing, "");
@@ -66,15 +66,15 @@ double compare(const std::string& path, int default_spp) {
   ImagePlan plan{.width = 192, .height = 108, .seeds = 8};
   const double seconds = default_spp * seconds_per_sample(scene, kDefault, plan);
   std::vector<ImagePoint> points;
-  for (const ImageWay& way : {kBefore, kDefault}) {
-    const double spp = seconds / seconds_per_sample(scene, way, plan);
+  for (const ImageVariant& variant : {kBefore, kDefault}) {
+    const double spp = seconds / seconds_per_sample(scene, variant, plan);
     for (const double part : {1.0, 0.25, 0.0625}) {
-      points.push_back({way, std::max(2, static_cast<int>(std::lround(part * spp)))});
+      points.push_back({variant, std::max(2, static_cast<int>(std::lround(part * spp)))});
     }
   }
-  plan.reference_way = {.sampler = compiler::SamplerKind::Independent};
+  plan.reference_variant = {.sampler = compiler::SamplerKind::Independent};
   plan.reference_spp = kReference * points[3].spp;
-  const Channels reference = reference_picture(scene, plan);
+  const PixelValues reference = reference_image(scene, plan);
   const std::vector<ImageMeasurement> rows = measure_points(scene, points, plan, reference, path);
   const std::vector<ImageCurve> curves = fit_curves(rows);
   fmt::print("{}, {} x {}, {} seeds; reference {} spp\n", path, plan.width, plan.height, plan.seeds,

@@ -1,7 +1,7 @@
 // Measures the cost of interpretation per ray. The whole marcher (clipping, steps, brackets, search in double) is
 // compared with the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera
 // rays and on the diffuse rays that leave their hits. Compiled code does not return the convexity radius
-// (vm/number/convex-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a second
+// (vm/number/convexity-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a second
 // row, with the unmodified marcher.
 //
 //     build/release/bench_marcher
@@ -68,7 +68,7 @@ class Scene {
       runtime::SurfacePoint point{};
       runtime::find_surfaces(scene_, field_, {&hit, 1}, {&point, 1}, workspace);
       runtime::Sampler sampler(1, ray_hit.id, 0, 0);
-      diffuse_.push_back(runtime::leave(
+      diffuse_.push_back(runtime::spawn_ray(
           hit, point, runtime::to_frame(point.normal, runtime::square_to_cosine_hemisphere(sampler.next2())), false));
     }
   }

@@ -43,7 +43,7 @@ HWY_INLINE V normalize(V a) { return a * (c(1) / sqrt(dot(a, a))); }
 HWY_INLINE V select(Mask m, V a, V b) { return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)}; }
 HWY_INLINE V broadcast(glm::dvec3 v) { return {c(v.x), c(v.y), c(v.z)}; }
 
-constexpr int kMostSteps = 256;
+constexpr int kMaxSteps = 256;
 
 template <class Scene>
 HWY_INLINE B field(V p) {
@@ -93,7 +93,7 @@ template <class Scene>
 HWY_INLINE Met march(V origin, V direction, Mask active, const View& view) {
   const B epsilon = c(view.epsilon), t_max = c(view.t_max);
   Met met{c(0) < c(0), c(0)};
-  for (int i = 0; i < kMostSteps && any(active); ++i) {
+  for (int i = 0; i < kMaxSteps && any(active); ++i) {
     const B q = field<Scene>(origin + direction * met.t);
     const Mask hits = active & (q < epsilon);
     met.hit = met.hit | hits;
@@ -197,7 +197,7 @@ class PathPackets {
       const Mask hits = under_way & (q < epsilon);
       under_way = and_not(hits, under_way);
       t_ = select(under_way, t_ + q, t_);
-      const Mask misses = under_way & ((t_ > t_max) | (steps_ >= c(kMostSteps)));
+      const Mask misses = under_way & ((t_ > t_max) | (steps_ >= c(kMaxSteps)));
       under_way = and_not(misses, under_way);
       hit = hit | hits;
       missed = missed | misses;
@@ -213,7 +213,7 @@ class PathPackets {
  private:
   void settle(Mask hit, Mask missed) {
     picture_.rays += count(hit | missed);
-    const Mask bounces = hit & (bounces_ < c(kMostBounces)), ended = and_not(bounces, hit | missed);
+    const Mask bounces = hit & (bounces_ < c(kMaxBounces)), ended = and_not(bounces, hit | missed);
     if (any(bounces)) bounce(bounces);
     // Adds the throughput of ended paths to their pixels, except for paths whose last surface is black.
     alignas(64) float value[kLanes], which[kLanes];

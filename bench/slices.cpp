@@ -15,7 +15,7 @@ using namespace fathom;
 constexpr int kSize = 1024, kRounds = 41;
 
 double milliseconds(const std::function<void()>& work) {
-  const runtime::Pinned pinned;
+  const runtime::PinnedThread pinned;
   return 1e3 * runtime::spread(runtime::time_interleaved({work}, kRounds)[0]).median;
 }
 

@@ -25,7 +25,7 @@ constexpr int kSide = 32;
 
 compiler::CompiledScene compile_furnace(const std::string& material) {
   compiler::Diagnostics diagnostics;
-  const compiler::Source source("furnace", "{\"version\": 1, " + tests::furnace(material) + "}");
+  const compiler::Source source("furnace", "{\"version\": 1, " + test::furnace(material) + "}");
   auto scene = compiler::compile(source, diagnostics);
   if (!scene) {
     fmt::print(stderr, "{}", diagnostics.print(source, compiler::ErrorFormat::Text));
@@ -53,12 +53,12 @@ constexpr Named kNamed[] = {
 };
 
 struct Furnace {
-  tests::WhiteMaterial material;
+  test::WhiteMaterial material;
   double returned;
 };
 
 void print_row(const char* what, const std::vector<Furnace>& all,
-               const std::function<bool(const tests::WhiteMaterial&)>& wanted) {
+               const std::function<bool(const test::WhiteMaterial&)>& wanted) {
   std::vector<double> values;
   for (const Furnace& furnace : all) {
     if (wanted(furnace.material)) values.push_back(furnace.returned);
@@ -73,16 +73,16 @@ void print_table(int count, int spp) {
   fmt::print("{:<48}{:>17}\n", "material", "returned");
   for (const Named& named : kNamed) {
     const std::string json = fmt::format(R"({{"type": "principled", "color": [1, 1, 1], {}}})", named.rest);
-    fmt::print("{:<48}{:>17.4f}\n", named.name, tests::returned(compile_furnace(json), kSide, 16 * spp));
+    fmt::print("{:<48}{:>17.4f}\n", named.name, test::returned(compile_furnace(json), kSide, 16 * spp));
   }
   std::vector<Furnace> all;
   for (int i = 0; i < count; ++i) {
-    tests::WhiteMaterial material = tests::random_white(static_cast<std::uint32_t>(i));
-    const double returned = tests::returned(compile_furnace(material.json), kSide, spp);
+    test::WhiteMaterial material = test::random_white(static_cast<std::uint32_t>(i));
+    const double returned = test::returned(compile_furnace(material.json), kSide, spp);
     all.push_back({std::move(material), returned});
   }
   fmt::print("\n{:<48}{:>8}{:>9}{:>9}{:>9}\n", "random materials", "count", "least", "mean", "most");
-  using tests::WhiteMaterial;
+  using test::WhiteMaterial;
   print_row("all", all, [](const WhiteMaterial&) { return true; });
   print_row("no coat, diffuse_roughness 0", all, [](const WhiteMaterial& m) { return !m.coat && !m.rough_pigment; });
   print_row("no coat, diffuse_roughness above 0", all,

@@ -23,7 +23,7 @@ struct Frame {
 inline constexpr Frame kShadowFrame{640, 360, 1}, kPathFrame{320, 180, 64};
 
 inline constexpr double kAlbedo = 0.8;
-inline constexpr int kMostBounces = 4;  // of P: the fifth surface on a path is black
+inline constexpr int kMaxBounces = 4;  // of P: the fifth surface on a path is black
 // Shading of S: 0.8 (0.1 + 0.9 s), where s is the cosine to the light, or 0 in shadow. A miss is 0.5 + 0.5 d.y.
 inline constexpr double kAmbient = 0.1;
 inline constexpr glm::dvec3 kToLight{0.6, 0.8, 0.4};  // not normalised

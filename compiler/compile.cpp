@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compiler/analysis/extent.h"
-#include "compiler/analysis/lamps.h"
+#include "compiler/analysis/area_lights.h"
 #include "compiler/analysis/lints.h"
 #include "compiler/analysis/media.h"
 #include "compiler/analysis/nan_regions.h"
@@ -41,13 +41,13 @@ constexpr std::string_view kOrigin = "origin";  // the first step (compiler/anal
 constexpr std::string_view kFuse = "fuse";      // the last step, over programs
 
 // Makes a camera that the scene does not place frame the whole scene.
-void place_camera(Elaborated& elaborated, const Box& extent) {
+void place_camera(ElaboratedScene& elaborated, const Box& extent) {
   const Film& film = elaborated.film;
   elaborated.camera = placed(elaborated.camera, extent, static_cast<double>(film.width) / film.height);
 }
 
 // Moves all places of the scene to the programs' coordinates. Returns the origin.
-glm::dvec3 move_to_origin(Elaborated& elaborated, const std::vector<Knowledge>& known,
+glm::dvec3 move_to_origin(ElaboratedScene& elaborated, const std::vector<NodeFacts>& known,
                           const std::optional<glm::dvec3>& given) {
   const glm::dvec3 origin = given ? *given : choose_origin(elaborated.scene, known, elaborated.camera);
   if (origin == glm::dvec3(0)) return origin;
@@ -59,7 +59,7 @@ glm::dvec3 move_to_origin(Elaborated& elaborated, const std::vector<Knowledge>& 
 }
 
 // Looks for the file of the background image, whose path is relative to the scene's folder.
-void find_files(Elaborated& elaborated, const Source& source, const std::string& at_hand, Diagnostics& diagnostics) {
+void find_files(ElaboratedScene& elaborated, const Source& source, const std::string& at_hand, Diagnostics& diagnostics) {
   namespace fs = std::filesystem;
   Background::Image& image = elaborated.background.image;
   if (elaborated.background.type != Background::Type::Image) return;
@@ -154,7 +154,7 @@ bool needs_tags(std::span<const Surface> surfaces) {
 // `optimised` is `scene` after the passes, without Paint, and `known` are its facts. `painted` is true if the surface
 // program needs tags.
 std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised,
-                                           const std::vector<Knowledge>& known, bool painted, const Source& source,
+                                           const std::vector<NodeFacts>& known, bool painted, const Source& source,
                                            Diagnostics& diagnostics, const CompileOptions& options) {
   const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
   std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
@@ -163,10 +163,10 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
   if (painted)
     surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
-  const Knowledge& all = known[optimised.root];
+  const NodeFacts& all = known[optimised.root];
   return CompiledField{
       std::move(*distance), std::move(*surface), all.box,      contents(optimised.graph, optimised.root, known),
-      all.lipschitz,        all.magnitude,       all.certified};
+      all.lipschitz,        all.cancellation,       all.certified};
 }
 
 // Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
@@ -182,7 +182,7 @@ void report_media(const Graph& graph, NodeId node, std::string_view what, const 
 }
 
 // Compiles the interiors of the transparent materials (compiler/analysis/media.h).
-std::optional<std::vector<Medium>> compile_media(const Elaborated& scene, bool painted, const Source& source,
+std::optional<std::vector<Medium>> compile_media(const ElaboratedScene& scene, bool painted, const Source& source,
                                                  Diagnostics& diagnostics, const CompileOptions& options) {
   const auto most = static_cast<std::size_t>(options.limits.media);
   MediaMaker maker(scene.scene, scene.surfaces, scene.materials, most);
@@ -225,32 +225,32 @@ std::size_t count_nodes(const Scene& scene) {
   return count;
 }
 
-std::string summarise(std::size_t nodes, Knowledge known, glm::dvec3 origin) {
+std::string summarise(std::size_t nodes, NodeFacts known, glm::dvec3 origin) {
   known.box = known.box.moved(origin);
   return fmt::format("{} {}, {}", nodes, nodes == 1 ? "node" : "nodes", describe(known));
 }
 
 // Warns when the float error of distances near the surface exceeds a ten-thousandth of the distance from the camera
 // to its target.
-void warn_of_cancellation(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
+void warn_of_cancellation(const Scene& scene, const std::vector<NodeFacts>& known, const Camera& camera,
                           Diagnostics& diagnostics) {
-  const double error = vm::kFloatError * known[scene.root].magnitude;
+  const double error = vm::kFloatError * known[scene.root].cancellation;
   const double most = 1e-4 * glm::length(camera.target - camera.position);
   // Marching allows for numbers up to 1 everywhere (runtime/field/field.h).
-  if (error <= most || known[scene.root].magnitude <= 1) return;
+  if (error <= most || known[scene.root].cancellation <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {
-    if (known[child].magnitude == known[scene.root].magnitude) worst = child;
+    if (known[child].cancellation == known[scene.root].cancellation) worst = child;
   }
   diagnostics.warning("W0403", scene.graph.origin(worst).span,
                       fmt::format("numbers around {:.3g} cancel here: in float its surface is known to {:.1g}",
-                                  known[worst].magnitude, error),
+                                  known[worst].cancellation, error),
                       "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
 }
 
 // Warns when the scene's contents and the camera lie so close together that double, which decides what float cannot,
 // has an error above a thousandth of a pixel.
-void warn_of_smallness(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera,
+void warn_of_smallness(const Scene& scene, const std::vector<NodeFacts>& known, const Camera& camera,
                        Diagnostics& diagnostics) {
   constexpr double kLeast = 1e-7;
   const Box box = contents(scene.graph, scene.root, known);
@@ -282,7 +282,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
     if (const std::optional<CompiledScene> model = compile(source, ignored, bare)) set_stage(*read, *model);
   }
   if (options.on_syntax) options.on_syntax(*read);
-  std::optional<Elaborated> elaborated =
+  std::optional<ElaboratedScene> elaborated =
       elaborate(read->file, diagnostics, options.definitions, options.limits, std::move(read->parameters));
   if (!elaborated) return std::nullopt;
   std::optional<Scene> derived = derive(elaborated->scene, elaborated->type_spans, options.limits, diagnostics);
@@ -293,7 +293,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   if (diagnostics.has_errors()) return std::nullopt;
 
   if (options.on_pass) options.on_pass(kGraph, elaborated->scene);
-  const std::vector<Knowledge> known_before = analyse(elaborated->scene.graph);
+  const std::vector<NodeFacts> known_before = analyse(elaborated->scene.graph);
   Box whole_extent = extent(elaborated->scene, known_before);
   place_camera(*elaborated, whole_extent);
   const glm::dvec3 origin =
@@ -301,7 +301,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   whole_extent = whole_extent.moved(-origin);
   place_camera(*elaborated, whole_extent);
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
-  const std::vector<Knowledge> known = analyse(field.graph);
+  const std::vector<NodeFacts> known = analyse(field.graph);
   const bool tagged = needs_tags(elaborated->surfaces);
   std::optional<CompiledField> whole =
       compile_field(elaborated->scene, field, known, tagged, source, diagnostics, options);
@@ -323,14 +323,14 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   }
   if (options.lint || options.lint_picture) lint_light(elaborated->scene, *elaborated, whole->surface, diagnostics);
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
-  std::vector<Lamp> lamps = find_lamps(elaborated->scene, elaborated->surfaces, elaborated->materials);
+  std::vector<AreaLight> area_lights = find_area_lights(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(*whole),
                        std::move(source),
                        origin,
                        whole_extent,
                        std::move(*media),
-                       std::move(lamps),
+                       std::move(area_lights),
                        std::move(*formulas),
                        count_nodes(field),
                        ""};

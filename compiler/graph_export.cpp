@@ -61,7 +61,7 @@ GraphJson params_json(const Graph& graph, NodeId id) {
   return params;
 }
 
-GraphJson source_json(const Origin& origin, const Source& source) {
+GraphJson source_json(const SourceLocation& origin, const Source& source) {
   if (origin.span.end == 0) return nullptr;
   const Position at = source.locate(origin.span.begin);
   GraphJson json = {{"line", at.line}, {"column", at.column}};
@@ -69,7 +69,7 @@ GraphJson source_json(const Origin& origin, const Source& source) {
   return json;
 }
 
-GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const Knowledge& known,
+GraphJson node_json(const Graph& graph, NodeId id, const NumberedNode& nodes, const NodeFacts& known,
                     const Source& source) {
   GraphJson children = GraphJson::array();
   for (const NodeId child : graph.children(id)) children.push_back(nodes.number_of[child]);
@@ -86,7 +86,7 @@ std::string print(const GraphJson& json) { return json.dump(-1, ' ', false, Grap
 
 // Returns the lines of a node's label: its type and name, its parameters, its place in the source.
 std::vector<std::string> label(const Graph& graph, NodeId id, const Source& source) {
-  const Origin& origin = graph.origin(id);
+  const SourceLocation& origin = graph.origin(id);
   std::vector<std::string> lines = {std::string(spec(graph.kind(id)).name)};
   if (!origin.name.empty()) lines[0] += fmt::format(" \"{}\"", origin.name);
   for (const NamedParam& param : named_params(graph.kind(id), graph.params(id))) {
@@ -126,7 +126,7 @@ std::string escape_mermaid(const std::string& text) {
 
 std::string graph_json(const Scene& scene, const Source& source) {
   const NumberedNode nodes = number_nodes(scene);
-  const std::vector<Knowledge> known = analyse(scene.graph);
+  const std::vector<NodeFacts> known = analyse(scene.graph);
   std::string out =
       fmt::format("{{\"scene\":{},\"root\":{},\"nodes\":[", print(source.name()), nodes.number_of[scene.root]);
   for (const NodeId id : nodes.ids) {

@@ -51,7 +51,7 @@ Stats Passes::run(SampleRange samples) {
 }
 
 RenderEnd Passes::end() const {
-  if (picture_.end() != RenderEnd::Done || context_.settings.noise_threshold.value_or(0) <= 0) return picture_.end();
+  if (shared_film_.end() != RenderEnd::Done || context_.settings.noise_threshold.value_or(0) <= 0) return shared_film_.end();
   const Tiles tiles(context_.settings.crop, kAdaptiveTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     if (image_noise(render_.film, tiles.at(i)) > *context_.settings.noise_threshold) return RenderEnd::Done;
@@ -64,30 +64,30 @@ Stats Passes::run_adaptive() {
   const double threshold = *settings.noise_threshold;
   AdaptiveState& state = render_.adaptive;
   if (!state.used()) {
-    picture_.change([&] {
+    shared_film_.modify([&] {
       if (adaptive_stages(threshold) > 1) render_.film.add_stage();
       render_.covered.resize(render_.film.stages());
       state.tiles.resize(static_cast<std::size_t>(Tiles(settings.crop, kAdaptiveTile).count()));
     });
   }
   Stats stats;
-  for (std::uint32_t end; (end = next_round(state.judged, settings.spp, threshold)) != 0;) {
+  for (std::uint32_t end; (end = next_round(state.tested_spp, settings.spp, threshold)) != 0;) {
     stats.merge(run_round(end));
-    if (picture_.stopped()) return stats;
-    picture_.change([&] { judge(render_.film, end, threshold, state); });
+    if (shared_film_.should_stop()) return stats;
+    shared_film_.modify([&] { test_convergence(render_.film, end, threshold, state); });
   }
   const bool decided = std::ranges::none_of(state.tiles, &AdaptiveTile::open);
-  picture_.change([&] {
-    if (!decided) assign_shares(render_.film, settings.spp, threshold, state);
+  shared_film_.modify([&] {
+    if (!decided) allocate_samples(render_.film, settings.spp, threshold, state);
   });
-  stats.merge(run_shares());
+  stats.merge(run_allocation());
   return stats;
 }
 
 Stats Passes::run_round(std::uint32_t end) {
   const AdaptiveState& state = render_.adaptive;
   const PixelRect area = context_.settings.crop;
-  const SampleRange round{state.judged, end};
+  const SampleRange round{state.tested_spp, end};
   const Tiles tiles(area, kAdaptiveTile);
   Stats stats;
   for (std::size_t stage = 0; stage < render_.film.stages(); ++stage) {
@@ -107,28 +107,28 @@ Stats Passes::run_round(std::uint32_t end) {
   return stats;
 }
 
-Stats Passes::run_shares() {
+Stats Passes::run_allocation() {
   const AdaptiveState& state = render_.adaptive;
-  std::uint32_t last = state.judged;
+  std::uint32_t last = state.tested_spp;
   for (const AdaptiveTile& tile : state.tiles) last = std::max({last, tile.ends[0], tile.ends[1]});
   const SampleLimits limits = limits_of(state, context_.settings.crop,
                                         [](const AdaptiveTile& tile, std::size_t half) { return tile.ends[half]; });
-  picture_.change([&] { picture_.expect(limits.sum() - render_.film.samples()); });
-  return run_pass(0, {state.judged, last}, limits);
+  shared_film_.modify([&] { shared_film_.set_remaining(limits.sum() - render_.film.samples()); });
+  return run_pass(0, {state.tested_spp, last}, limits);
 }
 
 // Treats `besides` as done, in addition to the samples in the film.
-Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& besides) {
+Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& already_covered) {
   const Settings& settings = context_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);
-  Coverage done = besides;
-  picture_.change([&] { done.add(render_.covered[stage]); });  // look() may be tidying it
-  done.tidy();
+  Coverage done = already_covered;
+  shared_film_.modify([&] { done.add(render_.covered[stage]); });  // read() may be canonicalising it
+  done.canonicalise();
   // With a time limit the first round has one sample per pixel: a user who sets a limit wants an early image of all
   // pixels, however noisy.
-  UnitQueue units(crop, side, rounds_of(samples, options_.time_limit ? 1 : kFirstRound), done);
-  return run_threads({context_, stage, limits, units, picture_}, settings.threads);
+  UnitQueue units(crop, side, split_into_rounds(samples, options_.time_limit ? 1 : kFirstRound), done);
+  return run_threads({context_, stage, limits, units, shared_film_}, settings.threads);
 }
 
 }  // namespace fathom::runtime

@@ -19,7 +19,7 @@
 namespace fathom::runtime {
 namespace {
 
-using Clock = SharedPicture::Clock;
+using Clock = SharedFilm::Clock;
 
 // Returns the function that interrupts building regions. The cost layer shows how much of the program was evaluated,
 // so a render that keeps this layer ignores the time limit here: a resumed render then has the same regions.
@@ -34,12 +34,12 @@ std::function<bool()> interruption(const Settings& settings, const RenderOptions
 // Calls on_tick every kTickSeconds, from a thread of its own, until the Ticker is destroyed.
 class Ticker {
  public:
-  Ticker(const RenderOptions& options, SharedPicture& picture) {
+  Ticker(const RenderOptions& options, SharedFilm& shared_film) {
     if (!options.on_tick) return;
-    thread_ = std::thread([this, &options, &picture] {
+    thread_ = std::thread([this, &options, &shared_film] {
       std::unique_lock lock(mutex_);
       while (!ended_.wait_for(lock, std::chrono::duration<double>(kTickSeconds), [this] { return over_; })) {
-        options.on_tick([&](const auto& use) { picture.look(use); });
+        options.on_tick([&](const auto& use) { shared_film.read(use); });
       }
     });
   }
@@ -110,7 +110,7 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     regions.interrupted = interruption(settings, options, start);
     RegionStore* const store = options.region_store.get();
     add_regions(context.field, scene, regions, store);
-    if (context.field.regions) regions.memory -= context.field.regions->facts().bytes;
+    if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
     context.media.add_regions(scene, regions, store);
   }
   RealScratch scratch;
@@ -141,7 +141,7 @@ std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Setti
   for (const Moment& moment : options.moments) {
     CHECK(moment.samples.first == end && moment.scene->origin == scene.origin, "moments in order about one origin");
     end = moment.samples.last;
-    const auto both = common({settings.crop, moment.samples}, {settings.crop, settings.samples});
+    const auto both = intersection({settings.crop, moment.samples}, {settings.crop, settings.samples});
     if (both) moments.push_back({moment.scene, both->samples});
   }
   CHECK(end == static_cast<std::uint32_t>(settings.spp), "a moment for every sample");
@@ -150,11 +150,11 @@ std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Setti
 
 void count_regions(const RenderContext& context, const RenderOptions& options, Stats& stats) {
   if (!context.field.regions) return;
-  const Regions::Facts& facts = context.field.regions->facts();
-  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, facts.bytes);
-  const bool kept = options.region_store && options.region_store->kept(*context.field.regions);
-  stats.region_seconds += kept ? 0 : facts.seconds;
-  stats.regions_kept += kept;
+  const Regions::Summary& summary = context.field.regions->summary();
+  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, summary.bytes);
+  const bool reused = options.region_store && options.region_store->reused(*context.field.regions);
+  stats.region_seconds += reused ? 0 : summary.seconds;
+  stats.regions_reused += reused;
 }
 
 }  // namespace
@@ -203,27 +203,27 @@ RenderResult render(const compiler::CompiledScene& scene, const RenderOptions& o
     result.covered.resize(1);
   }
   const std::uint64_t resumed = options.resume_from ? result.film.samples() : 0;
-  SharedPicture picture(result, samples_of(settings), options, start);
+  SharedFilm shared_film(result, samples_of(settings), options, start);
   std::optional<Ticker> ticker;
   for (const Moment& moment : moments_of(scene, settings, options)) {
     if (!options.moments.empty()) {
-      picture.change([&] { result.covered.front().tidy(); });
+      shared_film.modify([&] { result.covered.front().canonicalise(); });
       if (result.covered.front().covers({settings.crop, moment.samples})) continue;
     }
-    if (moment.samples.first > settings.samples.first && picture.stopped()) break;
+    if (moment.samples.first > settings.samples.first && shared_film.should_stop()) break;
     RenderContext context = make_context(*moment.scene, settings, options, start);
     context.numbered = same_numbers(scene, *moment.scene);
-    if (options.region_store) options.region_store->forget_unused();
-    if (!ticker) ticker.emplace(options, picture);
-    Passes passes(context, options, result, picture);
+    if (options.region_store) options.region_store->drop_unused();
+    if (!ticker) ticker.emplace(options, shared_film);
+    Passes passes(context, options, result, shared_film);
     result.stats.merge(passes.run(moment.samples));
     result.stats.end = passes.end();
     count_regions(context, options, result.stats);
   }
   ticker.reset();
-  if (picture.end() != RenderEnd::Done) result.stats.end = picture.end();
-  for (Coverage& covered : result.covered) covered.tidy();
-  result.stats.seconds = picture.seconds();
+  if (shared_film.end() != RenderEnd::Done) result.stats.end = shared_film.end();
+  for (Coverage& covered : result.covered) covered.canonicalise();
+  result.stats.seconds = shared_film.seconds();
   result.stats.threads = settings.threads;
   result.stats.resumed_samples = resumed;
   return result;

@@ -8,7 +8,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Returns the sample with its radiance scaled to at most `max` in magnitude. Filters may have negative weights.
+// Returns the sample with its radiance scaled to at most `max` in cancellation. Filters may have negative weights.
 PathSample clamped(PathSample sample, float max) {
   const float brightest = max_component(glm::abs(sample.radiance));
   if (brightest > max) sample.radiance *= max / brightest;
@@ -38,7 +38,7 @@ bool UnitWorker::next_pixel() {
     if (y_ == area.y1) {
       taking_ = false;
       open_[unit_].all_begun = true;
-      if (open_[unit_].ended == open_[unit_].begun) hand_in(unit_);
+      if (open_[unit_].ended == open_[unit_].begun) submit_unit(unit_);
     }
   }
   if (!taking_ && !next_unit()) return false;
@@ -52,7 +52,7 @@ bool UnitWorker::next_unit() {
   const auto block = work_.units.take();
   if (!block) return false;
   const bool first = work_.stage == 0 && block->samples.first == work_.context.settings.samples.first;
-  if (work_.picture.stopped(first)) return false;
+  if (work_.shared_film.should_stop(first)) return false;
   if (free_.empty()) {
     free_.push_back(static_cast<std::uint32_t>(open_.size()));
     open_.push_back({{}, Film({}, work_.context.settings.layers)});
@@ -74,14 +74,14 @@ bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
   OpenUnit& unit = open_[key.unit];
   const std::optional<double>& max = work_.context.settings.sample_clamp;
   const bool room = unit.film.add(key.x, key.y, max ? clamped(sample, static_cast<float>(*max)) : sample);
-  if (++unit.ended == unit.begun && unit.all_begun) hand_in(key.unit);
+  if (++unit.ended == unit.begun && unit.all_begun) submit_unit(key.unit);
   return room;
 }
 
-void UnitWorker::hand_in(std::uint32_t number) {
+void UnitWorker::submit_unit(std::uint32_t number) {
   const OpenUnit& unit = open_[number];
   const std::uint64_t rays = integrator_.stats().march.rays;
-  if (!work_.picture.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
+  if (!work_.shared_film.add(unit.film, unit.block, work_.stage, unit.ended, rays - reported_rays_)) ++full_sums_;
   reported_rays_ = rays;
   free_.push_back(number);
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runtime/path/integrator.h"
-#include "runtime/shared_picture.h"
+#include "runtime/shared_film.h"
 #include "runtime/units.h"
 
 namespace fathom::runtime {
@@ -35,7 +35,7 @@ struct PassWork {
   std::size_t stage;  // stage of the film
   const SampleLimits& limits;
   UnitQueue& units;
-  SharedPicture& picture;
+  SharedFilm& shared_film;
 };
 
 class UnitWorker : private PathSource, private SampleSink {
@@ -57,7 +57,7 @@ class UnitWorker : private PathSource, private SampleSink {
   bool add(const PathKey& key, const PathSample& sample) override;
   bool next_pixel();
   bool next_unit();
-  void hand_in(std::uint32_t number);
+  void submit_unit(std::uint32_t number);
 
   const PassWork& work_;
   std::vector<OpenUnit> open_;       // [PathKey::unit]

@@ -7,14 +7,14 @@
 
 namespace fathom::runtime {
 
-std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first) {
+std::vector<SampleRange> split_into_rounds(SampleRange samples, std::uint32_t first) {
   std::vector<SampleRange> rounds;
   std::uint32_t begin = samples.first, size = first;
   while (begin < samples.last) {
     const std::uint32_t end = begin + std::min(size, samples.last - begin);
     rounds.push_back({begin, end});
     begin = end;
-    size = std::min(begin - samples.first, kMostInRound);
+    size = std::min(begin - samples.first, kMaxInRound);
   }
   return rounds;
 }

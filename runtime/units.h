@@ -17,15 +17,15 @@
 namespace fathom::runtime {
 
 // Cuts a range of samples into rounds: first the first `first` samples, then each time as many samples as all rounds
-// before together, up to kMostInRound, which keeps units short.
-inline constexpr std::uint32_t kFirstRound = 16, kMostInRound = 256;
-std::vector<SampleRange> rounds_of(SampleRange samples, std::uint32_t first = kFirstRound);
+// before together, up to kMaxInRound, which keeps units short.
+inline constexpr std::uint32_t kFirstRound = 16, kMaxInRound = 256;
+std::vector<SampleRange> split_into_rounds(SampleRange samples, std::uint32_t first = kFirstRound);
 
 // Queue of the units that are left: round by round, tile by tile, without covered samples. Any thread may call
 // take().
 class UnitQueue {
  public:
-  // `covered` must be tidy and must outlive the queue.
+  // `covered` must be canonical and must outlive the queue.
   UnitQueue(PixelRect area, int tile_side, std::vector<SampleRange> rounds, const Coverage& covered);
 
   std::optional<SampleBlock> take();

@@ -155,7 +155,7 @@ std::optional<std::vector<Body>> find_bodies(const Scene& scene, const std::vect
         if (std::exchange(is_painted, true)) continue;  // the inner Paint left no leaf without a surface
         painted = paint(painted, surfaces[surface_of(graph, outer)].material, materials);
       }
-      const Origin origin = graph.origin(outer);
+      const SourceLocation origin = graph.origin(outer);
       node = graph.add(graph.kind(outer), graph.params(outer), std::span(&node, 1), origin);
     }
     if (graph.size() > scene.graph.size() + most) return std::nullopt;

@@ -7,7 +7,7 @@ namespace fathom::compiler {
 namespace {
 
 // Returns the bounding box of a node's finite parts, given those of its children.
-Box finite_part(const Graph& graph, NodeId id, const Knowledge& known, const std::vector<Box>& parts) {
+Box finite_part(const Graph& graph, NodeId id, const NodeFacts& known, const std::vector<Box>& parts) {
   if (known.box.finite()) return known.box;
   const std::span<const NodeId> children = graph.children(id);
   if (graph.kind(id) == Kind::Transform) {
@@ -21,7 +21,7 @@ Box finite_part(const Graph& graph, NodeId id, const Knowledge& known, const std
 
 }  // namespace
 
-Box extent(const Scene& scene, const std::vector<Knowledge>& known) {
+Box extent(const Scene& scene, const std::vector<NodeFacts>& known) {
   std::vector<Box> parts(scene.graph.size());
   for (NodeId id = 0; id <= scene.root; ++id) parts[id] = finite_part(scene.graph, id, known[id], parts);
   return parts[scene.root];

@@ -6,13 +6,13 @@
 
 #include "compiler/geometry/box.h"
 #include "compiler/graph/graph.h"
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 
 namespace fathom::compiler {
 
 // Returns the bounding box of all finite parts of the scene; empty when there are none. Planes, endless copies and
 // other infinite parts are left out. A solid cut from an infinite part counts: a pit is the visible part of a ground.
 // `known` is the result of analyse() (compiler/shapes/bounds.h).
-Box extent(const Scene& scene, const std::vector<Knowledge>& known);
+Box extent(const Scene& scene, const std::vector<NodeFacts>& known);
 
 }  // namespace fathom::compiler

@@ -21,7 +21,7 @@ void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
     if (!field.reached(id) || graph.kind(id) != Kind::Bounded || !field.estimates(id)) continue;
     const Span span = graph.origin(id).span;
     if (!warned.insert(span.begin).second) continue;
-    const bool searched = warned.size() <= Report::kMostSearched;
+    const bool searched = warned.size() <= Report::kMaxSearched;
     diagnostics.warning(
         "W0509", searched ? field.unbounded_operation(id).value_or(span) : span,
         fmt::format("no bound on how fast this {} changes: the picture may be wrong", field.place(id).type),

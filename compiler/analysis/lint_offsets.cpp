@@ -61,17 +61,17 @@ class OffsetLinter {
 
  private:
   Kind kind(NodeId id) const { return field_.graph().kind(id); }
-  Stretch stretch_of(NodeId id) const { return stretch(Affine::from_params(field_.graph().params(id))); }
+  SingularValues operator_norm(NodeId id) const { return singular_values(Affine::from_params(field_.graph().params(id))); }
 
   bool falls_short(NodeId id) const {
     if (kind(id) != Kind::Transform) return shortfall_of_periodic(kind(id)).has_value();
-    const Stretch s = stretch_of(id);
+    const SingularValues s = operator_norm(id);
     return s.most - s.least > 1e-9 * s.most;
   }
 
   bool measures(NodeId id) const {
     return (kind(id) == Kind::Round || kind(id) == Kind::Onion || is_blend(kind(id))) &&
-           field_.graph().params(id)[0] > kLeastBlend;
+           field_.graph().params(id)[0] > kMinBlend;
   }
 
   // True if the transform keeps the axes at right angles, as a scale does and a shear does not.
@@ -89,7 +89,7 @@ class OffsetLinter {
   void warn(NodeId id, NodeId part) {
     const std::optional<Shortfall> periodic = shortfall_of_periodic(kind(part));
     if (periodic) return warn_of_periodic(id, part, *periodic);
-    const Stretch s = stretch_of(part);
+    const SingularValues s = operator_norm(part);
     const double times = s.most / s.least;
     if (kind(field_.graph().children(part)[0]) == Kind::Sphere) return warn_of_ellipsoid(id, times);
     const bool scaled = keeps_angles(part);

@@ -19,9 +19,9 @@ namespace {
 // Ratio of coordinates to thickness at which a float has four bits left for the part.
 constexpr double kMost = 0x1p20;
 // Maximum number of places checked per node.
-constexpr std::size_t kMostPlaces = 256;
+constexpr std::size_t kMaxPlaces = 256;
 // Maximum number of places of all nodes together, not counting the first place of each node.
-constexpr std::size_t kMostInAll = 1 << 18;
+constexpr std::size_t kMaxInAll = 1 << 18;
 
 // Computes the places of nodes: [node] the maps from the node's own space to the scene's. A node below a fold, bend
 // or repetition has no unique place.
@@ -29,14 +29,14 @@ std::vector<std::vector<Affine>> places_of(const FieldGraph& field) {
   const Graph& graph = field.graph();
   std::vector<std::vector<Affine>> places(graph.size());
   places[field.root()] = {kIdentity};
-  std::size_t more = kMostInAll;
+  std::size_t more = kMaxInAll;
   for (NodeId id = field.root() + 1; id-- > 0;) {
     const bool transform = graph.kind(id) == Kind::Transform;
     if (places[id].empty() || (!transform && !takes_own_point(graph, id))) continue;
     const Affine up = transform ? inverse(Affine::from_params(graph.params(id))) : kIdentity;
     for (const NodeId child : field.children(id)) {
       for (const Affine& place : places[id]) {
-        if (!places[child].empty() && (places[child].size() == kMostPlaces || more == 0)) break;
+        if (!places[child].empty() && (places[child].size() == kMaxPlaces || more == 0)) break;
         if (!places[child].empty()) --more;
         places[child].push_back(compose(place, up));
       }
@@ -69,7 +69,7 @@ class PlaceLinter {
 
   void check(NodeId id, const Box& box, const Affine& place) {
     const Box there = image(place, box);
-    const double thick = thickness(field_.graph(), id, box) * stretch(place).least;
+    const double thick = thickness(field_.graph(), id, box) * singular_values(place).least;
     const double away = std::max(largest_part(there.lo), largest_part(there.hi));
     const Span span = field_.graph().origin(id).span;
     if (thick * kMost >= away || !said_.insert(span.begin).second) return;

@@ -41,7 +41,7 @@ bool rearranges(Kind kind) {
 }
 
 // Returns the box's smallest side greater than 0. An outline has no extent along z.
-double least_extent(const Box& box) {
+double min_extent(const Box& box) {
   double least = kInfinity;
   for (int i = 0; i < 3; ++i) {
     const double extent = box.hi[i] - box.lo[i];
@@ -70,7 +70,7 @@ class Linter {
       if (!field_.reached(id)) continue;
       check_repetition(id);
       check_blend(id);
-      check_lamp(id);
+      check_area_light(id);
       check_steepness(id);
     }
     check_thinness();
@@ -163,7 +163,7 @@ class Linter {
       if (arms.size() > Containment::kLongestList) continue;
       for (const auto [arm, within] : containment_.hidden_arms(graph_, arms)) {
         if (holds_clear_[within]) continue;
-        if (is_lamp_[arm]) {
+        if (is_area_light_[arm]) {
           warn("W0507", arm, fmt::format("the lamp {} sends out no light", word(arm)),
                fmt::format("it is wholly inside the {}", word(within)),
                "move it out, or cut room for it out of what it is in");
@@ -181,7 +181,7 @@ class Linter {
   }
 
   void find_light() {
-    holds_clear_.resize(graph_.size()), is_lamp_.resize(graph_.size());
+    holds_clear_.resize(graph_.size()), is_area_light_.resize(graph_.size());
     for (NodeId id = 0; id <= scene_.root; ++id) {
       const std::span<const NodeId> children = graph_.children(id);
       const auto surface = kind(id) == Kind::Paint ? static_cast<std::size_t>(graph_.params(id)[0]) : 0;
@@ -189,9 +189,9 @@ class Linter {
           (kind(id) == Kind::Paint && surface < tables_.surfaces.size() && is_clear(surface)) ||
           std::any_of(children.begin(), children.end(), [&](NodeId child) { return holds_clear_[child]; });
       const bool joins = kind(id) == Kind::Scaled || kind(id) == Kind::Transform || kind(id) == Kind::Union;
-      is_lamp_[id] = kind(id) == Kind::Paint ? emits(id)
+      is_area_light_[id] = kind(id) == Kind::Paint ? emits(id)
                                              : joins && std::all_of(children.begin(), children.end(),
-                                                                    [&](NodeId child) { return is_lamp_[child]; });
+                                                                    [&](NodeId child) { return is_area_light_[child]; });
     }
   }
 
@@ -200,7 +200,7 @@ class Linter {
     if (number >= tables_.surfaces.size()) return false;
     return compiler::emits(tables_.materials[tables_.surfaces[number].material]);
   }
-  void check_lamp(NodeId id) {
+  void check_area_light(NodeId id) {
     if (kind(id) != Kind::Paint || !emits(id)) return;
     const glm::dvec3 size = box(id).hi - box(id).lo;
     const int flat = (size.x <= 0) + (size.y <= 0) + (size.z <= 0);
@@ -241,7 +241,7 @@ class Linter {
     const double moved = kind(id) <= Kind::SmoothSubtraction ? width / 4 : width / 2;
     const bool adds = hard(kind(id)) == Kind::Union;
     for (const NodeId operand : graph_.children(id)) {
-      const double extent = adds ? greatest_extent(box(operand)) : least_extent(box(operand));
+      const double extent = adds ? greatest_extent(box(operand)) : min_extent(box(operand));
       if (moved <= extent / 2) continue;
       const std::string_view name = spec(kind(id)).params[0].name;
       warn("W0505", id, fmt::format("the blend is too wide for the {}", word(operand)),
@@ -308,7 +308,7 @@ class Linter {
       }
       if (!keeps_thinness(kind(id))) continue;
       double factor = scale[id];
-      if (kind(id) == Kind::Transform) factor /= stretch(Affine::from_params(graph_.params(id))).least;
+      if (kind(id) == Kind::Transform) factor /= singular_values(Affine::from_params(graph_.params(id))).least;
       for (const NodeId child : field_.children(id)) {
         scale[child] = std::max(scale[child], factor);
         away[child] = std::min(away[child], away[id]);
@@ -342,7 +342,7 @@ class Linter {
   Containment containment_;
   std::vector<bool> vanishes_;     // [node]
   std::vector<bool> holds_clear_;  // [node] true if light passes some of it, so that its contents show
-  std::vector<bool> is_lamp_;      // [node] true if it consists of lamps alone, by the outermost Paint
+  std::vector<bool> is_area_light_;      // [node] true if it consists of area lights alone, by the outermost Paint
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 
@@ -355,7 +355,7 @@ void lint(const Scene& scene, const SceneTables& tables, const vm::VerifiedProgr
 
 double thickness(const Graph& graph, NodeId id, const Box& box) {
   const Kind kind = graph.kind(id);
-  double least = spec(kind).category == Category::Primitive ? least_extent(box) : kInfinity;
+  double least = spec(kind).category == Category::Primitive ? min_extent(box) : kInfinity;
   for (const NamedParam& param : named_params(kind, graph.params(id))) {
     if (param.name == "thickness" || param.name == "half_depth") least = std::min(least, 2 * param.values[0]);
   }

@@ -49,7 +49,7 @@ MediaMaker::MediaMaker(const Scene& scene, std::span<const Surface> surfaces, st
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i].transparent) bodies_of[bodies_[i].material].push_back(i);
   }
-  const std::vector<Knowledge> known = analyse(graph_);
+  const std::vector<NodeFacts> known = analyse(graph_);
   std::vector<Box> boxes;
   for (const Body& body : bodies_) boxes.push_back(known[body.node].box);
   const Places places(std::move(boxes));
@@ -116,7 +116,7 @@ MediumScene MediaMaker::make(std::size_t i) {
   }
   std::vector<NodeId> own, operands;
   for (const NodeId node : medium.own) own.push_back(copied(node));
-  const Origin origin = graph_.origin(medium.own[0]);
+  const SourceLocation origin = graph_.origin(medium.own[0]);
   operands.push_back(own.size() == 1 ? own[0] : scene.graph.add(Kind::Union, {}, own, origin));
   for (const NodeId node : medium.cuts) operands.push_back(copied(node));
   scene.root = operands.size() == 1 ? operands[0] : scene.graph.add(Kind::Subtraction, {}, operands, origin);

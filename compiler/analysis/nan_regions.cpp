@@ -15,7 +15,7 @@
 namespace fathom::compiler {
 namespace {
 
-constexpr std::size_t kMostBoxes = 4096;
+constexpr std::size_t kMaxBoxes = 4096;
 
 // Searches the finite floats of a finite box for a NaN or an infinity. Boxes in which the machine may compute either
 // are cut into eight, again and again.
@@ -24,7 +24,7 @@ class Search {
   Search(const vm::VerifiedProgram& program, const Box& box) : program_(program), boxes_{{box}} {}
 
   std::optional<glm::dvec3> run() {
-    for (std::size_t looked = 0; looked < kMostBoxes && !boxes_.empty(); looked += vm::kEnclosedBoxes) {
+    for (std::size_t looked = 0; looked < kMaxBoxes && !boxes_.empty(); looked += vm::kEnclosedBoxes) {
       if (const auto point = look()) return point;
     }
     return std::nullopt;
@@ -78,7 +78,7 @@ class Search {
 
   void cut(const Box& box) {
     const glm::dvec3 middle = (box.lo + box.hi) * 0.5;
-    for (int part = 0; part < 8 && boxes_.size() < kMostBoxes; ++part) {
+    for (int part = 0; part < 8 && boxes_.size() < kMaxBoxes; ++part) {
       Box next = box;
       for (int axis = 0; axis < 3; ++axis) ((part >> axis & 1) != 0 ? next.lo : next.hi)[axis] = middle[axis];
       boxes_.push_back(next);

@@ -156,21 +156,21 @@ class Mover {
 
 // True if the move reduces the points' coordinates by at least as much as it increases the numbers that cancel. A
 // steep formula multiplies the rounding error of coordinates that it still has to receive unmoved.
-bool pays(const Scene& scene, dvec3 origin, double magnitude) {
+bool pays(const Scene& scene, dvec3 origin, double cancellation) {
   constexpr double kRounding = 1 + 1e-9;
   const Scene there = moved(scene, origin);
-  return analyse(there.graph)[there.root].magnitude <= (magnitude + largest_part(origin)) * kRounding;
+  return analyse(there.graph)[there.root].cancellation <= (cancellation + largest_part(origin)) * kRounding;
 }
 
 }  // namespace
 
-dvec3 choose_origin(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera) {
+dvec3 choose_origin(const Scene& scene, const std::vector<NodeFacts>& known, const Camera& camera) {
   const Box part = extent(scene, known);
   const Box view{glm::min(camera.position, camera.target), glm::max(camera.position, camera.target)};
   const dvec3 near_view = part.contains(camera.target) ? middle_if_far(view) : dvec3(0);
   const dvec3 near_parts = middle_if_far(known[scene.root].box.finite() ? part : unite(part, view));
   for (const dvec3 origin : {near_view, near_parts}) {
-    if (origin != dvec3(0) && pays(scene, origin, known[scene.root].magnitude)) return origin;
+    if (origin != dvec3(0) && pays(scene, origin, known[scene.root].cancellation)) return origin;
   }
   return dvec3(0);
 }

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "compiler/scene/compiled_scene.h"
 
 namespace fathom::compiler {
@@ -27,12 +27,12 @@ namespace fathom::compiler {
 // Other coordinates are multiples of the largest power of two within half the diagonal, so that numbers with few
 // digits keep few digits. A candidate that would increase float errors is rejected. `known` is the result of
 // analyse() (compiler/shapes/bounds.h).
-glm::dvec3 choose_origin(const Scene& scene, const std::vector<Knowledge>& known, const Camera& camera);
+glm::dvec3 choose_origin(const Scene& scene, const std::vector<NodeFacts>& known, const Camera& camera);
 
 // Returns the scene with `origin` at zero. The move passes through nodes that only combine or change distances. It
 // ends in the numbers of transforms, planes, triangles and quads, or in a new Transform. Below a new Transform points
 // have the scene's coordinates again: a formula written for a far place, or a twist about a far axis, stays as
-// imprecise as before, and Knowledge::magnitude says so.
+// imprecise as before, and NodeFacts::cancellation says so.
 // A moved Paint gets a surface of its own if a texture uses the node's coordinates: Surface::shift leads back.
 Scene moved(const Scene& scene, glm::dvec3 origin, std::vector<Surface>& surfaces);
 Scene moved(const Scene& scene, glm::dvec3 origin);

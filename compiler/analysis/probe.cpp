@@ -60,8 +60,8 @@ Box region(const Box& box, double reach) {
 // Evaluates the points of one row.
 class Prober {
  public:
-  Prober(const vm::VerifiedProgram& program, const Box& box, std::uint64_t seed, double magnitude)
-      : program_(program), box_(box), seed_(seed), magnitude_(magnitude) {
+  Prober(const vm::VerifiedProgram& program, const Box& box, std::uint64_t seed, double cancellation)
+      : program_(program), box_(box), seed_(seed), magnitude_(cancellation) {
     const glm::dvec3 size = box.hi - box.lo;
     size_ = std::max({size.x, size.y, size.z, 1e-9});
   }
@@ -135,14 +135,14 @@ class Probing {
 
   // Adds a row. The row of the whole scene sets the instruction budget, and each later row takes its part of it.
   void add(ProbeRow::What what, NodeId id, std::uint64_t points, std::vector<ProbeRow>& rows) {
-    const Knowledge& known = field_.known(id);
+    const NodeFacts& known = field_.known(id);
     ProbeRow& row = rows.emplace_back(ProbeRow{what, id, field_.place(id), known.certified, known.lipschitz});
     const bool first = what == ProbeRow::What::Scene;
     const auto allowed = static_cast<std::uint64_t>(Limits{}.instructions);
     const std::uint64_t most = first ? allowed : std::min(allowed, left_ / (points + kLowering));
     const std::optional<vm::Program> program = lower(field_.graph(), id, Source("", ""), most);
     const std::uint64_t length = program ? program->debug.size() : 0;
-    if (first) left_ = std::max(options_.least_work, points * length);
+    if (first) left_ = std::max(options_.min_work, points * length);
     // Lowering visits all nodes up to this one.
     if (!first) take(id + (program ? (points + kLowering) * length : kLowering * most));
     if (!program) return;
@@ -153,7 +153,7 @@ class Probing {
  private:
   // Runs the points in chunks. Each chunk has its own row, and the rows are merged in order.
   void run(const vm::VerifiedProgram& program, std::uint64_t points, ProbeRow& row) const {
-    const Knowledge& known = field_.known(row.node);
+    const NodeFacts& known = field_.known(row.node);
     // Nodes below a transform have a zero of their own.
     const glm::dvec3 zero = row.what == ProbeRow::What::Node ? glm::dvec3(0) : options_.origin;
     const Box box = region(known.box.moved(-zero), options_.reach).moved(zero);
@@ -162,7 +162,7 @@ class Probing {
     blank.place = {};
     std::vector<ProbeRow> parts(chunks, blank);
     parallel_for(
-        options_.threads, chunks, [&] { return Prober(program, box, row.node, known.magnitude); },
+        options_.threads, chunks, [&] { return Prober(program, box, row.node, known.cancellation); },
         [&](Prober& prober, std::size_t c) { prober.run(c * kChunk, std::min(points, (c + 1) * kChunk), parts[c]); });
     for (const ProbeRow& part : parts) merge(row, part);
   }

@@ -5,7 +5,7 @@
 // end at `reach` from the origin). The other half walk from there towards the surface. Points depend on their number
 // alone, so results do not depend on the number of threads. A node can have so many uses that its program is very
 // long. All rows after the first therefore share a budget: the number of instructions that the first row takes, or
-// `least_work` if that is more. A row that starts with too little budget left has no points. No probe proves
+// `min_work` if that is more. A row that starts with too little budget left has no points. No probe proves
 // anything, but a probe that breaks a constant refutes it.
 //
 //     const std::vector<ProbeRow> rows = probe(scene, surfaces, {.points = 1'000'000, .reach = 50});
@@ -26,7 +26,7 @@ struct ProbeOptions {
   double reach = 50;                 // where infinite sides end, scene units
   glm::dvec3 origin{0};              // centre of `reach` for the scene and its objects, scene units
   int threads = 1;
-  std::uint64_t least_work = 100'000'000;  // instructions, minimum budget of the rows after the first
+  std::uint64_t min_work = 100'000'000;  // instructions, minimum budget of the rows after the first
 };
 
 struct ProbeRow {

@@ -110,9 +110,9 @@ std::uint32_t FieldGraph::surface(NodeId object) const {
   return static_cast<std::uint32_t>(graph().params(object)[0]);
 }
 
-std::string_view class_of(const Knowledge& knowledge) {
-  if (!knowledge.certified || knowledge.outside == Exactness::Estimate) return "estimate";
-  return knowledge.outside == Exactness::Exact ? "exact" : "bound";
+std::string_view class_of(const NodeFacts& facts) {
+  if (!facts.certified || facts.outside == Exactness::Estimate) return "estimate";
+  return facts.outside == Exactness::Exact ? "exact" : "bound";
 }
 
 Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
@@ -123,7 +123,7 @@ Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
     const std::uint32_t surface = field.surface(object);
     ObjectReport& row = report.objects.emplace_back();
     if (surface < surfaces.size()) row.name = surfaces[surface].name;
-    row.knowledge = field.known(object);
+    row.facts = field.known(object);
     row.lipschitz = field.steepness(object);
     const NodeId worst = field.costliest(object);
     if (field.cost(worst) > kCheap) row.costliest = {field.place(worst), field.cost(worst)};
@@ -131,7 +131,7 @@ Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
   for (NodeId id = 0; id <= field.root(); ++id) {
     if (!field.reached(id) || !field.estimates(id)) continue;
     Estimate& estimate = report.estimates.emplace_back(Estimate{field.place(id), std::nullopt});
-    if (report.estimates.size() <= Report::kMostSearched) estimate.operation = field.unbounded_operation(id);
+    if (report.estimates.size() <= Report::kMaxSearched) estimate.operation = field.unbounded_operation(id);
   }
   return report;
 }

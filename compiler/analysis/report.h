@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "compiler/scene/compiled_scene.h"
 
 namespace fathom::compiler {
@@ -33,19 +33,19 @@ struct CostlyNode {
 
 struct ObjectReport {
   std::string name;
-  Knowledge knowledge;                  // of the object's own field
+  NodeFacts facts;                  // of the object's own field
   double lipschitz = 1;                 // of the object's own field, before levelling
   std::optional<CostlyNode> costliest;  // none when no node shortens steps
 };
 
 // A node whose constant is not proved, although the constants of its children are.
 struct Estimate : Place {
-  // For a formula, the operation whose slope has no bound. Only the first kMostSearched estimates have one.
+  // For a formula, the operation whose slope has no bound. Only the first kMaxSearched estimates have one.
   std::optional<Span> operation;
 };
 
 struct Report {
-  static constexpr std::size_t kMostSearched = 20;
+  static constexpr std::size_t kMaxSearched = 20;
 
   std::vector<ObjectReport> objects;
   bool certified = true;  // true if every constant is proved
@@ -56,7 +56,7 @@ struct Report {
 Report make_report(const Scene& scene, const std::vector<Surface>& surfaces);
 
 // Returns "exact", "bound" or "estimate": how far the field is a distance outside the solid.
-std::string_view class_of(const Knowledge& knowledge);
+std::string_view class_of(const NodeFacts& facts);
 
 // Facts about a graph that the report, the lints and the probe share.
 class FieldGraph {
@@ -65,7 +65,7 @@ class FieldGraph {
 
   // True if the root reaches the node by nodes that are distances, not by the parts of formulas.
   bool reached(NodeId id) const { return reached_[id]; }
-  const Knowledge& known(NodeId id) const { return known_[id]; }
+  const NodeFacts& known(NodeId id) const { return known_[id]; }
   // Returns the children that are distances; for a displacement, the displaced node.
   std::vector<NodeId> children(NodeId id) const;
   // Returns the node's constant over the largest of its children's; 1 for nodes that level.
@@ -92,7 +92,7 @@ class FieldGraph {
 
  private:
   const Scene scene_;
-  std::vector<Knowledge> known_;          // [node]
+  std::vector<NodeFacts> known_;          // [node]
   std::vector<bool> reached_;             // [node]
   std::vector<double> cost_, steepness_;  // [node]
   std::vector<NodeId> costliest_;         // [node]

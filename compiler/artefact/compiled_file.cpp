@@ -8,7 +8,6 @@
 #include <iterator>
 #include <utility>
 
-#include "compiler/artefact/byte_archive.h"
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/programs.h"
 #include "compiler/source/limits.h"
@@ -19,13 +18,13 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint64_t kMostText = 1 << 30;  // bytes of a scene and its imports, whose places have 32 bits
+constexpr std::uint64_t kMaxText = 1 << 30;  // bytes of a scene and its imports, whose places have 32 bits
 
-// In the order they lie in the file.
+// Sections, in the order of the file.
 enum Section { kCode, kTables, kDebug, kText, kSections };
 constexpr std::string_view kSectionNames[] = {"code", "tables", "debug", "text"};
 
-// Magic, version, number of sections, digest of the opcodes; of each section size and digest; digest of the header.
+// Magic, version, number of sections, digest of the opcodes; size and digest of each section; digest of the header.
 constexpr std::size_t kHeaderSize = 8 + 4 + 4 + 16 + kSections * (8 + 16) + 16;
 
 void write(vm::ByteWriter& out, vm::Digest digest) {
@@ -46,14 +45,9 @@ Bytes write_code(const CompiledScene& scene) {
   return out.take();
 }
 
-Bytes write_tables(const CompiledScene& scene) {
-  vm::ByteWriter out;
-  ByteArchiveWriter archive(out);
-  fields(archive, const_cast<CompiledScene&>(scene));  // a writer changes nothing
-  return out.take();
-}
+Bytes write_tables(const CompiledScene& scene) { return TableJson::to_cbor(tables_of(scene)); }
 
-// Without folders: a file does not depend on where its scene lay.
+// Returns the name without folders: a file does not depend on its scene's folder.
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 Bytes write_debug(const CompiledScene& scene) {
@@ -120,6 +114,14 @@ std::optional<FileError> read_debug(std::span<const std::uint8_t> bytes, Program
   return says_anything ? std::nullopt : std::optional(damaged("debug", "says nothing, and should be empty"));
 }
 
+// A file cut into its sections, whose digests are right.
+struct Sections {
+  vm::Digest opcodes;  // of the table that the programs were made for
+  std::span<const std::uint8_t> code, tables, debug;
+  std::optional<Source> text;  // under its file's name, without folders, with its imports
+  Definitions definitions;
+};
+
 struct Header {
   vm::Digest opcodes;
   std::array<std::uint64_t, kSections> sizes;  // bytes
@@ -152,7 +154,7 @@ std::variant<Header, FileError> read_header(vm::ByteReader& in, std::span<const 
   return header;
 }
 
-bool read_text(std::span<const std::uint8_t> bytes, CompiledFile& file) {
+bool read_text(std::span<const std::uint8_t> bytes, Sections& file) {
   vm::ByteReader in(bytes);
   std::string name = in.text(in.left());
   for (std::size_t left = in.count(12); left > 0; --left) {
@@ -169,6 +171,68 @@ bool read_text(std::span<const std::uint8_t> bytes, CompiledFile& file) {
   return !in.failed() && in.left() == 0;
 }
 
+// Returns the text as if it lay beside the file `path`.
+Source beside(const Source& text, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  Source there((folder / text.name()).string(), text.text());
+  for (const Import& import : files_of(text)) {
+    there.import(import.path, (folder / import.path).lexically_normal().string(), import.file->text());
+  }
+  return there;
+}
+
+std::variant<Sections, FileError> open_file(std::span<const std::uint8_t> bytes) {
+  vm::ByteReader in(bytes);
+  auto header = read_header(in, bytes);
+  if (auto* error = std::get_if<FileError>(&header)) return std::move(*error);
+  const auto& [opcodes, sizes, digests] = std::get<Header>(header);
+  std::span<const std::uint8_t> sections[kSections];
+  for (int i = 0; i < kSections; ++i) {
+    if (sizes[i] > in.left()) return damaged(kSectionNames[i], "is cut off");
+    sections[i] = in.raw(static_cast<std::size_t>(sizes[i]));
+    if (vm::digest(sections[i]) != digests[i]) return damaged(kSectionNames[i], "has another digest than it should");
+  }
+  if (in.left() > 0) return FileError{fmt::format("{} bytes follow its last section", in.left()), ""};
+  Sections file{opcodes, sections[kCode], sections[kTables], sections[kDebug], std::nullopt, {}};
+  if (!sections[kText].empty() && !read_text(sections[kText], file)) return damaged("text", "makes no sense");
+  return file;
+}
+
+// Returns the reason why the tables are refused.
+std::optional<FileError> read_tables(std::span<const std::uint8_t> bytes, CompiledScene& scene) {
+  auto parsed = parse_tables(bytes, true);
+  if (const auto* reason = std::get_if<std::string>(&parsed)) return damaged("tables", "is wrong: " + *reason);
+  Archive archive(std::get<TableJson>(std::move(parsed)));
+  read_tables(archive, scene);
+  if (archive.failed()) return damaged("tables", "is wrong at " + archive.reason());
+  const Bytes again = TableJson::to_cbor(archive.json());
+  if (!std::ranges::equal(again, bytes)) return damaged("tables", "is not in the shortest form");
+  return std::nullopt;
+}
+
+// Reads the scene of the file `path`.
+std::variant<CompiledScene, FileError> read_scene(const Sections& file, const std::string& path) {
+  if (file.opcodes != vm::opcode_digest()) {
+    return FileError{"its programs are for another machine than this program's",
+                     file.text ? "it holds its scene: `fathom compile` makes it anew"
+                               : "it holds no scene to compile again: use the program it was made with"};
+  }
+  auto read = read_code(file.code);
+  if (auto* error = std::get_if<FileError>(&read)) return std::move(*error);
+  auto& list = std::get<ProgramList>(read);
+  if (auto error = read_debug(file.debug, list)) return *std::move(error);
+  CompiledScene scene = std::move(list).scene();
+  if (auto error = read_tables(file.tables, scene)) return *std::move(error);
+  if (const auto fault = check_tags(scene)) {
+    return FileError{
+        fmt::format("program `{}`, word {}: {}", programs_of(scene)[fault->program].name, fault->word, fault->reason),
+        ""};
+  }
+  scene.source = file.text ? beside(*file.text, path) : Source(path, "");
+  resolve_image_path(scene);
+  return scene;
+}
+
 }  // namespace
 
 std::vector<Import> files_of(const Source& source) {
@@ -181,12 +245,12 @@ bool add_import(Source& source, const std::string& path, std::string text) {
   const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
   const bool known = std::ranges::find(source.imports(), path, &Import::path) != source.imports().end();
   if (path.empty() || normal.is_absolute() || normal.generic_string() != path || known) return false;
-  if (source.size() + text.size() > kMostText) return false;
+  if (source.size() + text.size() > kMaxText) return false;
   source.import(path, path, std::move(text));
   return true;
 }
 
-// By the first bytes, which no text begins with; the rest of the magic shows what happened to the file since.
+// Looks at the first bytes, which no text begins with. The rest of the magic shows damage by a text mode.
 bool is_compiled_file(std::string_view bytes) {
   constexpr std::size_t kName = 4;
   return bytes.size() >= kName && std::equal(kFileMagic.begin(), kFileMagic.begin() + kName,
@@ -211,63 +275,34 @@ std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileConte
   return out.take();
 }
 
-std::variant<CompiledFile, FileError> open_file(std::span<const std::uint8_t> bytes) {
-  vm::ByteReader in(bytes);
-  auto header = read_header(in, bytes);
-  if (auto* error = std::get_if<FileError>(&header)) return std::move(*error);
-  const auto& [opcodes, sizes, digests] = std::get<Header>(header);
-  std::span<const std::uint8_t> sections[kSections];
-  for (int i = 0; i < kSections; ++i) {
-    if (sizes[i] > in.left()) return damaged(kSectionNames[i], "is cut off");
-    sections[i] = in.raw(static_cast<std::size_t>(sizes[i]));
-    if (vm::digest(sections[i]) != digests[i]) return damaged(kSectionNames[i], "has another digest than it should");
-  }
-  if (in.left() > 0) return FileError{fmt::format("{} bytes follow its last section", in.left()), ""};
-  CompiledFile file{opcodes, sections[kCode], sections[kTables], sections[kDebug], std::nullopt, {}};
-  if (!sections[kText].empty() && !read_text(sections[kText], file)) return damaged("text", "makes no sense");
-  return file;
+std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes, const std::string& path) {
+  auto opened = open_file(bytes);
+  if (auto* error = std::get_if<FileError>(&opened)) return std::move(*error);
+  auto& file = std::get<Sections>(opened);
+  auto scene = read_scene(file, path);
+  if (auto* error = std::get_if<FileError>(&scene)) return std::move(*error);
+  return StoredScene{std::get<CompiledScene>(std::move(scene)),
+                     {!file.debug.empty(), file.text.has_value(), std::move(file.definitions)}};
 }
 
-std::variant<CompiledScene, FileError> read_file(const CompiledFile& file, const std::string& path) {
-  if (file.opcodes != vm::opcode_digest()) {
-    return FileError{"its programs are for another machine than this program's",
-                     file.text ? "it holds its scene: `fathom compile` makes it anew"
-                               : "it holds no scene to compile again: use the program it was made with"};
-  }
-  auto read = read_code(file.code);
-  if (auto* error = std::get_if<FileError>(&read)) return std::move(*error);
-  auto& list = std::get<ProgramList>(read);
-  if (auto error = read_debug(file.debug, list)) return *std::move(error);
-  CompiledScene scene = std::move(list).scene();
-  vm::ByteReader in(file.tables);
-  ByteArchiveReader archive(in);
-  fields(archive, scene);
-  if (archive.failed())
-    return damaged("tables", fmt::format("is wrong at byte {}: {}", in.offset(), archive.reason()));
-  if (in.left() > 0) return damaged("tables", "goes on after its last field");
-  if (const auto fault = check_tags(scene)) {
-    return FileError{
-        fmt::format("program `{}`, word {}: {}", programs_of(scene)[fault->program].name, fault->word, fault->reason),
-        ""};
-  }
-  scene.source = file.text ? beside(*file.text, path) : Source(path, "");
-  place_picture(scene);
-  return scene;
-}
-
-Source beside(const Source& text, const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  Source there((folder / text.name()).string(), text.text());
-  for (const Import& import : files_of(text)) {
-    there.import(import.path, (folder / import.path).lexically_normal().string(), import.file->text());
-  }
-  return there;
+std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_t> bytes, const std::string& path) {
+  auto opened = open_file(bytes);
+  if (auto* error = std::get_if<FileError>(&opened)) return std::move(*error);
+  auto& file = std::get<Sections>(opened);
+  if (file.text) return StoredText{beside(*file.text, path), std::move(file.definitions)};
+  return FileError{"it holds programs without the scene they were compiled from", "compile the scene's own file",
+                   true};
 }
 
 vm::Digest scene_digest(const CompiledScene& scene) {
   Bytes all = write_code(scene);
-  const Bytes tables = write_tables(scene);
-  all.insert(all.end(), tables.begin(), tables.end());
+  TableJson tables = tables_of(scene);
+  // A still does not depend on these: the moments of an animation are scenes with digests of their own.
+  for (const char* name : {"frames", "fps"}) tables["film"].erase(name);
+  tables["camera"].erase("shutter");
+  tables.erase("summary");
+  const Bytes written = TableJson::to_cbor(tables);
+  all.insert(all.end(), written.begin(), written.end());
   return vm::digest(all);
 }
 

@@ -16,17 +16,16 @@ namespace {
 
 using ChoiceNames = std::span<const std::string_view>;
 
-constexpr double kAny = 1e300;               // of numbers that must be finite alone
-constexpr double kTiny = 1e-300;             // of numbers above 0
-constexpr double kWhole = 9007199254740992;  // 2^53: up to here a double counts
+constexpr double kAny = 1e300;    // bound of numbers that only have to be finite
+constexpr double kTiny = 1e-300;  // bound of numbers above 0
 constexpr std::string_view kProjections[] = {"perspective", "orthographic", "panorama"};
 constexpr std::string_view kBackgrounds[] = {"gradient", "sky", "image"};
 constexpr std::string_view kLights[] = {"point", "spot", "directional"};
-constexpr std::string_view kLamps[] = {"sphere", "box", "cylinder", "capsule", "quad"};
+constexpr std::string_view kAreaLightShapes[] = {"sphere", "box", "cylinder", "capsule", "quad"};
 constexpr std::string_view kMaterials[] = {"diffuse", "emissive", "specular", "transparent", "principled"};
 
 void index(Archive& a, std::string_view name, std::uint32_t& number, std::size_t count) {
-  if (a.reading() && count == 0) return a.fail(fmt::format("`{}` names something of which there is none", name));
+  if (a.reading() && count == 0) return a.fail(fmt::format("`{}` has nothing to refer to", name));
   field(a, name, number, 0, a.reading() ? count - 1 : ~std::uint32_t{0});
 }
 
@@ -36,11 +35,11 @@ void unit_vector(Archive& a, std::string_view name, glm::dvec3& v) {
 }
 
 void signed_whole(Archive& a, std::string_view name, int& number, int least, int most) {
-  double wide = number;
-  field(a, name, wide, least, most);
-  const bool negative_zero = wide == 0 && std::signbit(wide);
-  if (wide != std::trunc(wide) || negative_zero) a.fail(fmt::format("{} is not a whole number", wide));
-  number = static_cast<int>(wide);
+  double doubles = number;
+  field(a, name, doubles, least, most);
+  const bool negative_zero = doubles == 0 && std::signbit(doubles);
+  if (doubles != std::trunc(doubles) || negative_zero) a.fail(fmt::format("{} is not a whole number", doubles));
+  number = static_cast<int>(doubles);
 }
 
 struct Interval {
@@ -65,9 +64,7 @@ void fields(Archive& a, TexturedParameter& t, std::size_t textures) {
     return all;
   }();
   std::size_t at = a.reading() ? 0 : static_cast<std::size_t>(&parameter_of(t.parameter) - kMaterialParameters);
-  a.begin("parameter");
-  a.choice(at, names);
-  a.end();
+  a.member("parameter", [&](TableJson& json) { choice(a, json, at, names); });
   t.parameter = kMaterialParameters[at].member;
   index(a, "texture", t.texture, textures);
   field(a, "least", t.least, -kAny, kAny);
@@ -115,7 +112,7 @@ void fields(Archive& a, Pattern::Bricks& b) {
   field(a, "shift", b.shift, 0, 1);
 }
 
-// A variant as the index of what it holds, by name, and that.
+// A variant as the name of its alternative. The alternative's fields follow.
 template <typename Variant, std::size_t... kIndex>
 void make(Variant& v, std::size_t index, std::index_sequence<kIndex...>) {
   (void)((index == kIndex && (v = std::variant_alternative_t<kIndex, Variant>{}, true)) || ...);
@@ -123,9 +120,7 @@ void make(Variant& v, std::size_t index, std::index_sequence<kIndex...>) {
 template <typename Variant>
 void kind(Archive& a, std::string_view name, Variant& v, ChoiceNames names) {
   std::size_t index = v.index();
-  a.begin(name);
-  a.choice(index, names);
-  a.end();
+  a.member(name, [&](TableJson& json) { choice(a, json, index, names); });
   if (a.reading()) make(v, index, std::make_index_sequence<std::variant_size_v<Variant>>());
 }
 
@@ -135,7 +130,7 @@ constexpr std::string_view kChannels[] = {"red", "green", "blue"};
 constexpr std::string_view kCorners[] = {"corner0", "corner1", "corner2", "corner3"};
 constexpr std::string_view kTextures[] = {"color", "formula", "pattern"};
 
-// `textures` is how many come before this one.
+// `textures` is the number of textures before this one.
 void fields(Archive& a, Pattern& p, std::size_t textures) {
   kind(a, "pattern", p.kind, kPatterns);
   std::visit([&](auto& own) { fields(a, own); }, p.kind);
@@ -160,8 +155,8 @@ void fields(Archive& a, Texture& t, std::size_t textures, std::size_t formulas) 
   }
 }
 
-void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
-  field(a, "shape", l.shape, ChoiceNames(kLamps));
+void fields(Archive& a, AreaLight& l, const CompiledScene& scene) {
+  field(a, "shape", l.shape, ChoiceNames(kAreaLightShapes));
   field(a, "rotation", l.rotation, -1.001, 1.001);
   field(a, "translation", l.translation, -kAny, kAny);
   field(a, "radius", l.radius, 0, kAny);
@@ -174,20 +169,8 @@ void fields(Archive& a, Lamp& l, const CompiledScene& scene) {
   index(a, "material", l.material, scene.materials.size());
 }
 
-void media(Archive& a, CompiledScene& scene) {
-  a.begin("media");
-  if (a.list(scene.media.size()) != scene.media.size()) a.fail("there are not as many programs of media");
-  for (Medium& medium : scene.media) {
-    a.begin_record();
-    index(a, "material", medium.material, scene.materials.size());
-    fields(a, static_cast<CompiledField&>(medium));
-    a.end_record();
-  }
-  a.end();
-}
-
-// Of patterns of patterns: how deep the deepest is, and how many are evaluated at a point for the dearest; one that
-// two share counts twice.
+// Work of evaluating patterns of patterns at a point: the depth of the deepest, and the number of evaluations of the
+// most expensive. A pattern that two patterns share counts twice.
 struct TextureWork {
   int depth = 0;
   double evaluations = 1;
@@ -207,19 +190,12 @@ TextureWork work_of(const std::vector<Texture>& textures) {
 }
 
 void textures(Archive& a, CompiledScene& scene) {
-  a.begin("textures");
-  const std::size_t count = a.list(scene.textures.size());
-  if (a.reading()) scene.textures.clear();
-  for (std::size_t i = 0; i < count && !a.failed(); ++i) {
-    if (a.reading()) scene.textures.emplace_back();
-    a.begin_record();
-    fields(a, scene.textures[i], i, scene.formulas.size());
-    a.end_record();
-  }
-  a.end();
+  std::size_t before = 0;
+  list(a, "textures", scene.textures,
+       [&](Archive& archive, Texture& texture) { fields(archive, texture, before++, scene.formulas.size()); });
   if (!a.reading() || a.failed()) return;
-  // Of a scene's text no more than there are, for there nothing is shared; a few thousand do no harm where something
-  // is.
+  // Compiled text shares no textures, so that it evaluates at most textures.size(). Files may share textures, and a
+  // few thousand evaluations do no harm.
   const double allowed = std::max(4096.0, static_cast<double>(scene.textures.size()));
   const TextureWork most = work_of(scene.textures);
   if (most.depth > kMaxPatternDepth + 1) a.fail(fmt::format("patterns are more than {} deep", kMaxPatternDepth));
@@ -255,30 +231,34 @@ void fields(Archive& a, Camera& c) {
   field(a, "focus_distance", c.focus_distance, kTiny, kAny);
   field(a, "blades", c.blades, 0, kMaxBlades);
   field(a, "blade_rotation", c.blade_rotation, -kAny, kAny);
+  field(a, "shutter", c.shutter, 0, 1);
   if (!a.reading() || a.failed()) return;
   const glm::dvec3 view = c.target - c.position;
   const double across = glm::length(glm::cross(glm::normalize(view), glm::normalize(c.up)));
   if (!(glm::length(view) > 0 && across > 0)) a.fail("the camera has no direction of view, or looks along its `up`");
 }
 
-void fields(Archive& a, Film& f) {
-  field(a, "width", f.width, 1, kMaxSide);
-  field(a, "height", f.height, 1, kMaxSide);
-  field(a, "exposure", f.exposure, -100, 100);
-  field(a, "filter", f.filter, ChoiceNames(kFilterNames));
-  field(a, "filter_width", f.filter_width, kMinFilterWidth, kMaxFilterWidth);
-  field(a, "tone", f.tone, ChoiceNames(kToneCurves));
+// The members of Film or RenderSettings in the order of settings.def.
+template <typename Record>
+void settings(Archive& a, Record& record) {
+  for_each_setting_of<Record>([&](const auto& row) {
+    using Value = typename std::remove_cvref_t<decltype(row)>::Value;
+    auto& member = record.*row.member;
+    if constexpr (std::is_enum_v<Value>) {
+      field(a, row.name, member, words_of(Value{}));
+    } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
+      field(a, row.name, member, std::uint64_t{0}, ~std::uint64_t{0});  // an option takes all 64 bits
+    } else if constexpr (std::is_integral_v<Value>) {
+      field(a, row.name, member, static_cast<std::uint64_t>(row.range.least),
+            static_cast<std::uint64_t>(row.range.most));
+    } else {
+      field(a, row.name, member, row.range.above_zero ? kTiny : row.range.least,
+            row.range.above_zero ? kAny : row.range.most);
+    }
+  });
 }
-
-void fields(Archive& a, RenderSettings& s) {
-  field(a, "spp", s.spp, 1, kMaxSpp);
-  field(a, "rr_depth", s.rr_depth, 0, kMaxDepth);
-  field(a, "tile", s.tile, 1, kMaxTile);
-  field(a, "seed", s.seed, 0, ~std::uint64_t{0});
-  field(a, "sampler", s.sampler, ChoiceNames(kSamplerNames));
-  field(a, "noise_threshold", s.noise_threshold, 0, 1e6);
-  field(a, "far", s.far, kTiny, kAny);
-}
+void fields(Archive& a, Film& film) { settings(a, film); }
+void fields(Archive& a, RenderSettings& render) { settings(a, render); }
 
 void fields(Archive& a, Background& b) {
   field(a, "type", b.type, ChoiceNames(kBackgrounds));
@@ -290,7 +270,7 @@ void fields(Archive& a, Background& b) {
   field(a, "ground_albedo", b.sky.ground_albedo, 0, 1);
   field(a, "sky_strength", b.sky.strength, 0, kAny);
   field(a, "sun_disc", b.sky.sun_disc);
-  field(a, "picture", b.image.name);
+  field(a, "image", b.image.name);
   field(a, "rotate", b.image.rotate, -kAny, kAny);
   field(a, "strength", b.image.strength, 0, kAny);
 }
@@ -311,8 +291,22 @@ void fields(Archive& a, CompiledField& f) {
   field(a, "contents_lo", f.contents.lo, -kEndless, kEndless);
   field(a, "contents_hi", f.contents.hi, -kEndless, kEndless);
   field(a, "lipschitz", f.lipschitz, kTiny, kAny);
-  field(a, "magnitude", f.magnitude, 0, kAny);
+  field(a, "cancellation", f.cancellation, 0, kAny);
   field(a, "certified", f.certified);
+}
+
+static void media(Archive& a, CompiledScene& scene) {
+  const std::size_t count = scene.media.size();
+  a.member("media", [&](TableJson& json) {
+    a.array(
+        json, count, [&](std::size_t size) { return size == count; },
+        [&](TableJson& element, std::size_t i) {
+          a.record(element, [&] {
+            index(a, "material", scene.media[i].material, scene.materials.size());
+            fields(a, static_cast<CompiledField&>(scene.media[i]));
+          });
+        });
+  });
 }
 
 void fields(Archive& a, CompiledScene& scene) {
@@ -338,12 +332,22 @@ void fields(Archive& a, CompiledScene& scene) {
     field(archive, "shift", surface.shift, -kAny, kAny);
   });
   if (a.reading() && !a.failed() && scene.surfaces.empty()) a.fail("there is no surface");
-  list(a, "lamps", scene.lamps, [&](Archive& archive, Lamp& lamp) { fields(archive, lamp, scene); });
+  list(a, "lamps", scene.area_lights, [&](Archive& archive, AreaLight& area_light) { fields(archive, area_light, scene); });
   record(a, "field", static_cast<CompiledField&>(scene));
   media(a, scene);
 }
 
-void place_picture(CompiledScene& scene) {
+TableJson tables_of(const CompiledScene& scene) {
+  Archive archive;
+  read_tables(archive, const_cast<CompiledScene&>(scene));  // a writer changes nothing
+  return archive.json();
+}
+
+void read_tables(Archive& archive, CompiledScene& scene) {
+  archive.all([&] { fields(archive, scene); });
+}
+
+void resolve_image_path(CompiledScene& scene) {
   Background::Image& image = scene.background.image;
   const std::filesystem::path folder = std::filesystem::path(scene.source.name()).parent_path();
   image.file = image.name.empty() ? "" : (folder / image.name).string();

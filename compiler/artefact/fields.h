@@ -1,6 +1,5 @@
-// What each part of a compiled scene consists of, beside its programs: the one list that files of compiled scenes,
-// as bytes and as text, are written and read by. Ranges are what the renderer relies on.
-// Tested by: tests/compiler/artefact/artefact_test.cpp
+// The fields of a compiled scene except its programs: the one list by which its tables are written and read. The
+// ranges are all that the renderer relies on. Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
 #include "compiler/artefact/archive.h"
@@ -8,20 +7,15 @@
 
 namespace fathom::compiler {
 
-// All but `source` and the programs. Reading, `scene` has its programs, and as many media as there are programs of
-// media; what refers to something refers to something that is there.
+// Everything except `source` and the programs. Reading, `scene` has its programs, and as many media as there are
+// programs of media. An index refers to an element that is there.
 void fields(Archive& archive, CompiledScene& scene);
 
-// After reading, once `source` has its name: the picture that the background names lies beside it.
-void place_picture(CompiledScene& scene);
+TableJson tables_of(const CompiledScene& scene);
+void read_tables(Archive& archive, CompiledScene& scene);  // of all JSON that the reader `archive` has
 
-// Of its parts.
-void fields(Archive& archive, Parameter& parameter);
-void fields(Archive& archive, Camera& camera);
-void fields(Archive& archive, Film& film);
-void fields(Archive& archive, RenderSettings& settings);
-void fields(Archive& archive, Background& background);
-void fields(Archive& archive, Light& light);
-void fields(Archive& archive, CompiledField& field);
+// Completes the name of the background's image file, which lies beside `source`. Call after reading, once `source`
+// has its name.
+void resolve_image_path(CompiledScene& scene);
 
 }  // namespace fathom::compiler

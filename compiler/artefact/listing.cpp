@@ -3,23 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/programs.h"
-#include "compiler/artefact/text_archive.h"
 #include "vm/encoding/assemble.h"
 #include "vm/encoding/binary.h"
 #include "vm/encoding/disassemble.h"
 #include "vm/encoding/escape.h"
+#include "vm/program/opcode.h"
+#include "vm/range/slope.h"
 
 namespace fathom::compiler {
 namespace {
 
 constexpr std::string_view kListingHead = "fathom";
 
-// The lines of a text, each after a bar, so that anything can stand in them.
+// Returns the lines of a text, each after a bar, so that no line can be taken for one of the listing.
 std::string barred(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at <= text.size();) {
@@ -34,36 +37,86 @@ vm::VerifiedProgram without_debug(const vm::VerifiedProgram& program) { return v
 
 std::string file_name(const Source& source) { return std::filesystem::path(source.name()).filename().string(); }
 
+// Reads the words of a line: bare words, and texts in quotes. `;` begins a comment. After the first failure, the
+// other functions do nothing.
+class Words {
+ public:
+  Words(std::string_view text, std::size_t at) : text_(text), at_(at) {}
+
+  std::string_view next() {
+    const std::size_t begin = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size());
+    if (begin < text_.size() && text_[begin] == '"') {
+      at_ = begin + std::max<std::size_t>(vm::quoted_length(text_.substr(begin)), 1);
+    } else {
+      at_ = std::min(text_.find_first_of(" \t\r\n;", begin), text_.size());
+    }
+    word_ = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(at_)};
+    return text_.substr(begin, at_ - begin);
+  }
+  void expect(std::string_view word) {
+    if (!failed() && next() != word) fail(fmt::format("`{}` should be here", word));
+  }
+  void text(std::string& text) {
+    if (failed()) return;
+    const std::string_view word = next();
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    if (!quoted || !vm::unescape(word.substr(1, word.size() - 2), text)) fail("this should be a text in quotes");
+  }
+  void number(double& number) {
+    if (failed()) return;
+    const std::string_view word = next();
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || end != word.data() + word.size()) fail("this should be a number");
+  }
+  void skip_comment() {
+    const std::size_t begin = text_.find_first_not_of(" \t", at_);
+    if (begin < text_.size() && text_[begin] == ';') at_ = std::min(text_.find('\n', begin), text_.size());
+  }
+  void fail(std::string reason) { reason_ = std::move(reason); }
+  bool failed() const { return !reason_.empty(); }
+  const std::string& reason() const { return reason_; }
+  Span word() const { return word_; }  // the last word, at fault after a failure
+  std::size_t at() const { return at_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_;
+  Span word_{};
+  std::string reason_;
+};
+
 class ListingReader {
  public:
   ListingReader(const Source& source, Diagnostics& diagnostics)
       : source_(source), text_(source.text()), diagnostics_(diagnostics) {}
 
-  // A whole file: its programs first, for the tables are checked against them.
+  // Reads a whole file. The programs come first, because the tables are checked against them.
   std::optional<CompiledScene> read_all(FileContents& contents) {
-    TextArchiveReader in(text_);
-    read_head(in);
-    if (in.failed()) return refuse(in);
-    const std::size_t tables = in.at();
+    Words head(text_, 0);
+    head.expect(kListingHead);
+    head.expect(std::to_string(kFileVersion));
+    head.expect("machine");
+    if (!head.failed() && head.next() != vm::opcode_digest().text())
+      head.fail("this is another machine than this program's");
+    head.skip_comment();
+    head.expect("tables");
+    if (head.failed()) return error(head.word(), head.reason());
     std::optional<ProgramList> list = read_programs(contents);
     if (!list) return std::nullopt;
     CompiledScene scene = std::move(*list).scene();
-    TextArchiveReader table_reader(std::string_view(text_).substr(0, programs_begin_));
-    table_reader.skip_to(tables);
-    record(table_reader, "tables", scene);
-    if (!table_reader.failed() && !table_reader.next().empty()) {
-      table_reader.fail("here a program should begin: `program distance {`");
+    if (!read_json(head, scene)) return std::nullopt;
+    if (const auto fault = check_tags(scene)) {
+      const Span body = bodies_[fault->program];
+      return error(line_of_word(body.begin, body.end, fault->word), fault->reason);
     }
-    if (table_reader.failed()) return refuse(table_reader);
-    if (const auto fault = check_tags(scene)) return refuse_tag(bodies_[fault->program], *fault);
     contents.text = text_found_;
     contents.definitions = std::move(definitions_);
     if (text_found_ && !set_source(scene)) return std::nullopt;
-    place_picture(scene);
+    resolve_image_path(scene);
     return scene;
   }
 
-  // A listing of one program.
+  // Reads the listing of a single program.
   std::optional<CompiledScene> read_one(FileContents& contents) {
     std::optional<vm::VerifiedProgram> program = assemble(0, text_.size());
     if (!program) return std::nullopt;
@@ -75,7 +128,8 @@ class ListingReader {
     if (!name_surfaces(scene)) return std::nullopt;
     scene.materials.emplace_back().name = "white";
     scene.background.bottom = scene.background.top = glm::dvec3(1);
-    scene.summary = "a program, nothing is proved";
+    claim_slopes(scene);
+    scene.summary = "a program alone, whose constants follow from intervals";
     contents = {has_debug(scene.distance), false, {}};
     return scene;
   }
@@ -90,25 +144,38 @@ class ListingReader {
     return true;
   }
 
-  // As many as the tags of a program alone name.
+  // Reads the tables between the word `tables` and the first program.
+  bool read_json(const Words& head, CompiledScene& scene) {
+    const std::size_t begin = head.at(), end = std::max(begin, programs_begin_);
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text_.data());
+    auto parsed = parse_tables({bytes + begin, end - begin}, false);
+    if (const auto* reason = std::get_if<std::string>(&parsed)) return report(head.word(), "the tables: " + *reason);
+    Archive archive(std::get<TableJson>(std::move(parsed)));
+    read_tables(archive, scene);
+    return archive.failed() ? report(head.word(), "the tables: " + archive.reason()) : true;
+  }
+
+  // Sets the constants of a field, about which a program alone says nothing, to those that interval arithmetic shows.
+  static void claim_slopes(CompiledField& field) {
+    vm::Workspace workspace;
+    const Box all = Box::everything();
+    const vm::SlopeBound slope = vm::evaluate_slope(field.distance, all.lo, all.hi, workspace);
+    if (slope.lipschitz > 0 && std::isfinite(slope.lipschitz)) field.lipschitz = slope.lipschitz;
+    if (std::isfinite(slope.float_error)) field.cancellation = slope.float_error / vm::kFloatError;
+  }
+
+  // Names as many surfaces as the tags of a program alone need.
   bool name_surfaces(CompiledScene& scene) {
-    constexpr std::size_t kMostSurfaces = 65536;
-    const std::size_t named = std::min(surfaces_named(scene.distance), kMostSurfaces);
+    constexpr std::size_t kMaxSurfaces = 65536;
+    const std::size_t named = std::min(surfaces_named(scene.distance), kMaxSurfaces);
     for (std::size_t i = 0; i < named; ++i) scene.surfaces.push_back({fmt::format("surface {}", i), 0, false});
     const auto fault = check_tags(scene);
     if (!fault) return true;
     return report(line_of_word(0, text_.size(), fault->word),
-                  fmt::format("a program alone has {} surfaces at most", kMostSurfaces));
-  }
-  void read_head(TextArchiveReader& in) {
-    in.expect(kListingHead);
-    in.expect(std::to_string(kFileVersion));
-    in.expect("machine");
-    if (!in.failed() && in.next() != vm::opcode_digest().text())
-      in.fail("this is another machine than this program's");
+                  fmt::format("a program alone has {} surfaces at most", kMaxSurfaces));
   }
 
-  // All "program NAME {" ... "}" and the text, which begin at the start of a line.
+  // Reads all "program NAME {" ... "}" and the text, which begin at the start of a line.
   std::optional<ProgramList> read_programs(FileContents& contents) {
     std::vector<std::pair<std::string, Span>> bodies;
     programs_begin_ = text_.size();
@@ -166,16 +233,11 @@ class ListingReader {
     if (const auto* wrong = std::get_if<vm::AssembleError>(&program)) {
       return refuse_line(begin, *wrong);
     }
-    const std::vector<vm::DebugEntry> places = std::get<vm::Program>(program).debug;
     auto verified = vm::verify(std::get<vm::Program>(std::move(program)), largest_machine());
     if (const auto* wrong = std::get_if<vm::VerifyError>(&verified)) {
       return error_at<vm::VerifiedProgram>(line_of_word(begin, end, wrong->offset), wrong->reason);
     }
     return std::get<vm::VerifiedProgram>(std::move(verified));
-  }
-
-  std::optional<CompiledScene> refuse_tag(Span body, const TagFault& fault) {
-    return error(line_of_word(body.begin, body.end, fault.word), fault.reason);
   }
 
   std::optional<vm::VerifiedProgram> refuse_line(std::size_t begin, const vm::AssembleError& wrong) {
@@ -192,7 +254,7 @@ class ListingReader {
     return std::nullopt;
   }
 
-  // The line of the instruction that the word is of: the assembler knows words, people know lines.
+  // Returns the line of the instruction that the word belongs to: the assembler knows words, people know lines.
   Span line_of_word(std::size_t begin, std::size_t end, std::uint32_t word) const {
     std::size_t words = 0;
     for (std::size_t at = begin; at < end;) {
@@ -206,11 +268,10 @@ class ListingReader {
   }
 
   bool read_text(std::size_t begin, std::size_t end) {
-    TextArchiveReader in(std::string_view(text_).substr(0, end));
-    in.skip_to(begin);
-    in.expect("text");
-    in.text(text_name_);
-    if (in.failed()) return report(span(in.fault_begin(), in.fault_end()), in.reason());
+    Words words(std::string_view(text_).substr(0, end), begin);
+    words.expect("text");
+    words.text(text_name_);
+    if (words.failed()) return report(words.word(), words.reason());
     for (std::size_t at = end + 1; at < text_.size();) {
       const std::size_t line_end = std::min(text_.find('\n', at), text_.size());
       std::string_view line = std::string_view(text_).substr(at, line_end - at);
@@ -237,31 +298,26 @@ class ListingReader {
     return true;
   }
 
-  // import "lib/gears.fathom", before its lines
+  // Reads `import "lib/gears.fathom"`, which precedes the lines of the import.
   bool read_import(std::size_t begin, std::size_t end) {
-    TextArchiveReader in(std::string_view(text_).substr(0, end));
-    in.skip_to(begin);
-    in.expect("import");
+    Words words(std::string_view(text_).substr(0, end), begin);
+    words.expect("import");
     FileText& file = texts_.emplace_back();
     file.place = span(begin, end);
-    in.text(file.path);
-    return in.failed() ? report(span(in.fault_begin(), in.fault_end()), in.reason()) : true;
+    words.text(file.path);
+    return words.failed() ? report(words.word(), words.reason()) : true;
   }
 
-  // define "r" 0.5
+  // Reads `define "r" 0.5`.
   bool read_definition(std::size_t begin, std::size_t end) {
-    TextArchiveReader in(std::string_view(text_).substr(0, end));
-    in.skip_to(begin);
+    Words words(std::string_view(text_).substr(0, end), begin);
     auto& [name, value] = definitions_.emplace_back();
-    in.expect("define");
-    in.text(name);
-    in.number(value);
-    return in.failed() ? report(span(in.fault_begin(), in.fault_end()), in.reason()) : true;
+    words.expect("define");
+    words.text(name);
+    words.number(value);
+    return words.failed() ? report(words.word(), words.reason()) : true;
   }
 
-  std::optional<CompiledScene> refuse(const TextArchiveReader& in) {
-    return error(span(in.fault_begin(), in.fault_end()), in.reason());
-  }
   std::optional<CompiledScene> error(Span place, std::string reason) {
     return error_at<CompiledScene>(place, std::move(reason));
   }
@@ -297,10 +353,8 @@ class ListingReader {
 }  // namespace
 
 std::string write_listing(const CompiledScene& scene, const FileContents& contents) {
-  TextArchiveWriter archive;
-  record(archive, "tables", const_cast<CompiledScene&>(scene));  // a writer changes nothing
-  std::string out =
-      fmt::format("{} {}\nmachine {}\n{}", kListingHead, kFileVersion, vm::opcode_digest().text(), archive.out());
+  std::string out = fmt::format("{} {}\nmachine {}\ntables {}\n", kListingHead, kFileVersion,
+                                vm::opcode_digest().text(), print_tables(tables_of(scene)));
   for (const NamedProgram& row : programs_of(scene)) {
     const std::string listing = vm::disassemble(contents.debug ? *row.program : without_debug(*row.program));
     out += fmt::format("program {} {{\n{}}}\n", row.name, listing);
@@ -319,8 +373,7 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
 
 std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents) {
   ListingReader reader(listing, diagnostics);
-  TextArchiveReader in(listing.text());
-  return in.next() == kListingHead ? reader.read_all(contents) : reader.read_one(contents);
+  return Words(listing.text(), 0).next() == kListingHead ? reader.read_all(contents) : reader.read_one(contents);
 }
 
 }  // namespace fathom::compiler

@@ -1,9 +1,9 @@
-// A compiled scene as text that loses nothing: what `fathom dump --stage file` prints and `fathom asm` reads.
+// A compiled scene as text without loss: the output of `fathom dump --stage file` and the input of `fathom asm`.
 //
-//     fathom 3
+//     fathom 4
 //     machine 6f1c...            ; the digest of the opcodes
 //     tables {
-//       summary "1 node, ..."
+//       "summary": "1 node, ...",
 //       ...
 //     }
 //     program distance {
@@ -14,7 +14,7 @@
 //     |  "version": 1,
 //     ...
 //
-// A listing of one program alone is read, too: a scene of it in white, with the default camera and nothing proved.
+// The reader also takes the listing of a single program: a scene of the program in white, with the default camera.
 // Tested by: tests/compiler/artefact/artefact_test.cpp
 #pragma once
 
@@ -28,7 +28,7 @@ namespace fathom::compiler {
 
 std::string write_listing(const CompiledScene& scene, const FileContents& contents = {});
 
-// nullopt after reporting an error. What was not written comes back empty; `contents` says what was.
+// Returns nothing after reporting an error. Sets `contents` to the contents of the listing.
 std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents);
 
 }  // namespace fathom::compiler

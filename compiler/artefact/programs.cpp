@@ -44,7 +44,7 @@ CompiledScene ProgramList::scene() && {
 
 namespace {
 
-// of(word, surface) for every tag of a program, until it returns false.
+// Calls of(word, surface) for every tag of a program until it returns false.
 template <typename F>
 void for_each_tag(const vm::VerifiedProgram& program, const F& of) {
   const std::vector<std::uint32_t>& words = program.program().words;
@@ -97,7 +97,7 @@ std::optional<Excess> excess_of(const CompiledScene& stored, const Limits& limit
                   raise(&Limits::pixels, width * height)};
   }
   if (stored.settings.spp > limits.samples) {
-    return Excess{fmt::format("{} samples a pixel, and {} are allowed", stored.settings.spp, limits.samples),
+    return Excess{fmt::format("{} samples per pixel, and {} are allowed", stored.settings.spp, limits.samples),
                   raise(&Limits::samples, stored.settings.spp)};
   }
   return std::nullopt;

@@ -20,19 +20,19 @@ struct NamedProgram {
 
 std::vector<NamedProgram> programs_of(const CompiledScene& scene);
 
-// Whether a program says where its instructions come from, or of which source.
+// True if a program has names or places of its instructions, or the name of its source.
 bool has_debug(const vm::VerifiedProgram& program);
 
-// Collects them, in that order.
+// Collects the programs of a scene in that order.
 class ProgramList {
  public:
   ProgramList(std::size_t media, std::size_t formulas) : media_(media), formulas_(formulas) {}
 
-  std::string next() const { return name(programs.size()); }  // the name of the one that is wanted
+  std::string next() const { return name(programs.size()); }  // the name of the program to be added next
   bool full() const { return programs.size() == 2 + 2 * media_ + formulas_; }
   void add(vm::VerifiedProgram program) { programs.push_back(std::move(program)); }
 
-  // With nothing but the programs. The list must be full.
+  // Returns a scene that has only the programs. The list must be full.
   CompiledScene scene() &&;
 
   std::vector<vm::VerifiedProgram> programs;
@@ -43,7 +43,7 @@ class ProgramList {
   std::size_t media_, formulas_;
 };
 
-// The first tag that names no surface.
+// The first tag without a surface.
 struct TagFault {
   std::size_t program;  // in the order of programs_of()
   std::uint32_t word;
@@ -51,11 +51,11 @@ struct TagFault {
 };
 std::optional<TagFault> check_tags(const CompiledScene& scene);
 
-// As many surfaces as the program's tags name, at least one.
+// Returns the number of surfaces that the program's tags need, at least 1.
 std::size_t surfaces_named(const vm::VerifiedProgram& program);
 
-// What of a stored scene goes beyond the limits: a program, the picture's size, or its samples. A scene that is
-// compiled here has been held to them.
+// Returns what exceeds the limits: a program, the image's size or the number of samples. compile() applies the limits
+// itself.
 std::optional<Excess> excess_of(const CompiledScene& stored, const Limits& limits);
 
 }  // namespace fathom::compiler

@@ -46,7 +46,7 @@ class Deriver {
     const Kind kind = described_.kind(id);
     const std::span<const double> params = described_.params(id);
     const Span type_span = id < type_spans_.size() ? type_spans_[id] : Span{};
-    if (const Complaint problem = maker_.complaint(kind, params, children)) {
+    if (const ErrorText problem = maker_.complaint(kind, params, children)) {
       const NodeSpec& row = spec(kind);
       diagnostics_.error("E0302", type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
       return children[0];

@@ -27,7 +27,7 @@ constexpr double kCloseEnough = 1.02;
 struct Cell {
   Box box;
   vm::SlopeBound bound;
-  std::shared_ptr<const vm::Part> part;  // the part of the formula that matters within the box
+  std::shared_ptr<const vm::PrunedProgram> part;  // the part of the formula that matters within the box
   // Orders the queue by steepness, steepest on top. Among cells that are equally steep except for rounding the
   // smaller comes first, because it is nearer to the place of that slope. Among jumps the larger comes first, so that
   // the search visits many places before a cell is too small to split.
@@ -47,7 +47,7 @@ class Bisection {
   // `used`: the coordinates that the formula contains. The formula is constant along the others.
   Bisection(const vm::VerifiedProgram& program, const Box& box, std::array<bool, 3> used)
       : length_(static_cast<int>(program.instructions())), cost_(program.cost()), whole_(box), used_(used) {
-    add(box, std::make_shared<const vm::Part>(vm::whole(program)));
+    add(box, std::make_shared<const vm::PrunedProgram>(vm::whole(program)));
   }
 
   FormulaBound run() {
@@ -77,8 +77,8 @@ class Bisection {
 
  private:
   // `part`: the part of an enclosing cell.
-  void add(const Box& box, std::shared_ptr<const vm::Part> part) {
-    Cell cell{box, specialiser_.look(*part, box.lo, box.hi, workspace_), part};
+  void add(const Box& box, std::shared_ptr<const vm::PrunedProgram> part) {
+    Cell cell{box, specialiser_.enclose_choices(*part, box.lo, box.hi, workspace_), part};
     if (cell.bound.lipschitz > kCloseEnough * seen_) cell.part = cut(part);
     if (cell.bound.lipschitz > seen_) see(cell);
     cells_.push(std::move(cell));
@@ -97,13 +97,13 @@ class Bisection {
   }
 
   // Specialises the part for the cell that look() has just bounded.
-  std::shared_ptr<const vm::Part> cut(const std::shared_ptr<const vm::Part>& part) {
+  std::shared_ptr<const vm::PrunedProgram> cut(const std::shared_ptr<const vm::PrunedProgram>& part) {
     if (part->choices == 0) return part;
-    specialiser_.decide(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
+    specialiser_.resolve(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
     // specialising would remove next to nothing
     if (10 * specialiser_.choices_left(0) > 9 * part->choices) return part;
-    auto smaller = std::make_shared<vm::Part>();
-    specialiser_.part(0, *smaller);
+    auto smaller = std::make_shared<vm::PrunedProgram>();
+    specialiser_.prune(0, *smaller);
     return smaller;
   }
 

@@ -15,8 +15,8 @@ constexpr double kInfiniteSide = 1e18;  // replaces an infinite side in the prog
 
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
 
-NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double magnitude, bool certified,
-               const Origin& origin) {
+NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double cancellation, bool certified,
+               const SourceLocation& origin) {
   std::vector<double> params;
   for (const glm::dvec3& corner : {box.lo, box.hi}) {
     for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kInfiniteSide, kInfiniteSide));
@@ -24,7 +24,7 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   // A field that does not change has its box as its only surface, so any constant will do.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
   params.insert(params.end(),
-                {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? magnitude : 0.0, certified ? 1.0 : 0.0});
+                {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? cancellation : 0.0, certified ? 1.0 : 0.0});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }
@@ -40,7 +40,7 @@ struct DisplacedBound {
 // Returns a box that contains the displaced solid: the child's box grown by g, where g covers the amount by which the
 // formula lowers the distance within the box. The loop extrapolates the needed growth along its slope to where it
 // equals the given growth. If the formula always needs more, the solid can be anywhere.
-DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowledge& child) {
+DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const NodeFacts& child) {
   constexpr int kTries = 8;
   double grown = 0, last_grown = 0, last_needed = 0;
   for (int i = 0; i < kTries && child.reach_max > 0 && std::isfinite(grown); ++i) {
@@ -57,19 +57,19 @@ DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const Knowled
   return {Box::everything(), bound_formula(graph, formula, Box::everything())};
 }
 
-NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const Origin& origin) {
-  const Knowledge child = maker.known(children[0]);
+NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const SourceLocation& origin) {
+  const NodeFacts child = maker.known(children[0]);
   const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
   const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
   const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
   return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
-                 child.magnitude + magnitude_of(bound.float_error), proved && child.certified, origin);
+                 child.cancellation + magnitude_of(bound.float_error), proved && child.certified, origin);
 }
 
 }  // namespace
 
-NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Origin& origin) {
+NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin) {
   const FormulaBound bound = bound_formula(maker.graph(), formula, box);
   const bool proved = std::isfinite(bound.lipschitz);
   return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound), magnitude_of(bound.float_error),
@@ -77,7 +77,7 @@ NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Orig
 }
 
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
-                  const Origin& origin) {
+                  const SourceLocation& origin) {
   switch (kind) {
     case Kind::Expression:
       return make_bounded(maker, children[0], Box::centred({params[0], params[1], params[2]}), origin);

@@ -62,7 +62,7 @@ Expression FunctionLibrary::apply(vm::Opcode opcode, const std::vector<Expressio
   std::vector<std::string> floats;
   for (int i = 0; row.form != Form::Outline && i < row.immediates; ++i) {
     if (vm::is_integer_immediate(row, i)) continue;
-    floats.push_back(language_.literal(immediates.wide[static_cast<std::size_t>(i)]));
+    floats.push_back(language_.literal(immediates.doubles[static_cast<std::size_t>(i)]));
   }
   if (const auto expression =
           as_expression(language_, function.recorded, parameter_texts(language_, row, operands, floats))) {
@@ -79,7 +79,7 @@ Expression FunctionLibrary::apply(vm::Opcode opcode, const std::vector<Expressio
 FunctionLibrary::Function& FunctionLibrary::function_of(const OpcodeInfo& row, const Immediates& immediates) {
   std::vector<double> key = {static_cast<double>(row.opcode)};
   std::string name = language_.prefix + std::string(row.mnemonic);
-  if (row.form == Form::Outline) key.insert(key.end(), immediates.wide.begin(), immediates.wide.end());
+  if (row.form == Form::Outline) key.insert(key.end(), immediates.doubles.begin(), immediates.doubles.end());
   for (int i = 0; i < row.immediates; ++i) {
     if (!vm::is_integer_immediate(row, i)) continue;
     key.push_back(immediates.words[static_cast<std::size_t>(i)]);
@@ -89,7 +89,7 @@ FunctionLibrary::Function& FunctionLibrary::function_of(const OpcodeInfo& row, c
   if (!fresh) return found->second;
   if (row.form == Form::Outline) {
     name += fmt::format("_{}", ++outlines_[row.opcode]);
-    found->second.recorded = vm::record_outline(row.opcode, immediates.wide);
+    found->second.recorded = vm::record_outline(row.opcode, immediates.doubles);
   } else {
     found->second.recorded = vm::reroll(vm::record(row.opcode, immediates.words));
   }
@@ -134,15 +134,15 @@ void FunctionLibrary::print_operation(vm::Operation operation) {
   for (const Expression& operand : operands)
     parameters.push_back(fmt::format("{} {}", language_.number_type, operand.text));
 
-  const vm::RecordedFunction narrow = vm::record(operation, false), wide = vm::record(operation, true);
+  const vm::RecordedFunction narrow = vm::record(operation, false), doubles = vm::record(operation, true);
   print_called(narrow);
   text_ += fmt::format("{}{} {}{}({}) {{\n", language_.function_head, language_.number_type, language_.prefix,
                        spelling.substr(1, spelling.find('(') - 1), joined(parameters));
   const std::string body = print_body(language_, narrow, operands, "  ");
-  if (!language_.has_double || body == print_body(language_, wide, operands, "  ")) {
+  if (!language_.has_double || body == print_body(language_, doubles, operands, "  ")) {
     text_ += body;
   } else {
-    text_ += "  if constexpr (kDouble) {\n" + print_body(language_, wide, operands, "    ") + "  } else {\n" +
+    text_ += "  if constexpr (kDouble) {\n" + print_body(language_, doubles, operands, "    ") + "  } else {\n" +
              print_body(language_, narrow, operands, "    ") + "  }\n";
   }
   text_ += "}\n";

@@ -14,7 +14,7 @@ namespace fathom::compiler {
 // An instruction's immediates, without those that belong to its operand.
 struct Immediates {
   std::span<const std::uint32_t> words;
-  std::span<const double> wide;
+  std::span<const double> doubles;
 };
 
 class FunctionLibrary {

@@ -52,7 +52,7 @@ class ProgramPrinter {
     at_ = end;
     const std::size_t first = leading_ + static_cast<std::size_t>(vm::leading_immediates(word));
     const Immediates immediates{std::span(program_.words).subspan(first, end - first),
-                                std::span(program_.wide).subspan(first, end - first)};
+                                std::span(program_.doubles).subspan(first, end - first)};
     switch (row.form) {
       case Form::Point:
         points_.push_back(name_point(functions_.apply(row.opcode, {points_.back()}, immediates)));
@@ -79,11 +79,11 @@ class ProgramPrinter {
   void shape(const OpcodeInfo& row, std::uint32_t word, const Immediates& immediates) {
     const std::uint32_t modes = vm::operand_of(word);
     Expression p = points_.back();
-    if (modes & vm::kMoved) {
-      p = functions_.apply(Opcode::Translate, {p}, {{}, std::span(program_.wide).subspan(leading_, 3)});
+    if (modes & vm::kFusedTranslate) {
+      p = functions_.apply(Opcode::Translate, {p}, {{}, std::span(program_.doubles).subspan(leading_, 3)});
     }
     Expression value = functions_.apply(row.opcode, {p}, immediates);
-    if (modes & vm::kJoined) value = functions_.apply(Opcode::Min, {pop(), value}, {});
+    if (modes & vm::kFusedMin) value = functions_.apply(Opcode::Min, {pop(), value}, {});
     push(std::move(value));
   }
 
@@ -108,7 +108,7 @@ class ProgramPrinter {
       case vm::Source::Stack:
         return pop();
       case vm::Source::Constant:
-        return language_.number(language_.literal(program_.wide[leading_++]));
+        return language_.number(language_.literal(program_.doubles[leading_++]));
       case vm::Source::Local:
         return locals_[local];
       default:

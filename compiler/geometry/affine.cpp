@@ -61,7 +61,7 @@ namespace {
 
 // Returns the largest singular value, by Jacobi's method on the symmetric matrix of the rows' dot products (Golub &
 // Van Loan, "Matrix Computations", 8.5).
-double most_stretch(const Affine& a) {
+double max_singular_value(const Affine& a) {
   double m[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) m[i][j] = glm::dot(a.rows[i], a.rows[j]);
@@ -92,7 +92,7 @@ double most_stretch(const Affine& a) {
 
 // Computes the smallest singular value from the inverse: squaring loses the digits of a small singular value next to
 // a large one.
-Stretch stretch(const Affine& a) { return {1 / most_stretch(inverse(a)), most_stretch(a)}; }
+SingularValues singular_values(const Affine& a) { return {1 / max_singular_value(inverse(a)), max_singular_value(a)}; }
 
 bool is_axis_aligned(const Affine& a) {
   return std::all_of(a.rows.begin(), a.rows.end(),

@@ -30,10 +30,10 @@ Affine inverse(const Affine& a);
 // that it maps to.
 Box image(const Affine& a, const Box& box);
 // Smallest and largest factor by which the linear part stretches a vector (its extreme singular values).
-struct Stretch {
+struct SingularValues {
   double least, most;
 };
-Stretch stretch(const Affine& a);
+SingularValues singular_values(const Affine& a);
 // True if every row has a single non-zero entry, so that boxes map to boxes.
 bool is_axis_aligned(const Affine& a);
 

@@ -144,32 +144,32 @@ enum class Kind : std::uint8_t {
 inline constexpr std::size_t kKindCount = static_cast<std::size_t>(Kind::Noise) + 1;
 
 // A blend narrower than this changes no float, so the compiler treats it as no blend.
-inline constexpr double kLeastBlend = 1e-30;
+inline constexpr double kMinBlend = 1e-30;
 
 using NodeId = std::uint32_t;
 
 // Place where the scene first writes a node, and the name that the scene gives it ("" when none).
-struct Origin {
+struct SourceLocation {
   Span span;
   std::string name;
 };
 
 class Graph {
  public:
-  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const Origin& origin = {});
+  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const SourceLocation& origin = {});
 
   std::size_t size() const { return nodes_.size(); }
   Kind kind(NodeId id) const { return nodes_[id].kind; }
   std::span<const double> params(NodeId id) const;    // valid until the next add()
   std::span<const NodeId> children(NodeId id) const;  // valid until the next add()
-  const Origin& origin(NodeId id) const { return nodes_[id].origin; }
+  const SourceLocation& origin(NodeId id) const { return nodes_[id].origin; }
 
  private:
   struct Node {
     Kind kind;
     std::uint32_t first_param, param_count, first_child, child_count;
     std::uint64_t hash;
-    Origin origin;
+    SourceLocation origin;
   };
   bool equal(NodeId id, Kind kind, std::span<const double> params, std::span<const NodeId> children) const;
   void grow_table();

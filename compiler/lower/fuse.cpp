@@ -30,7 +30,7 @@ std::vector<Step> steps_of(vm::Program& program) {
     Step step{row.opcode, vm::operand_of(word), {}, std::move(program.debug[steps.size()])};
     for (std::size_t i = at + 1; i < end; ++i) {
       const bool integer = i >= own && vm::is_integer_immediate(row, static_cast<int>(i - own));
-      step.immediates.push_back(integer ? program.words[i] : program.wide[i]);
+      step.immediates.push_back(integer ? program.words[i] : program.doubles[i]);
     }
     if (row.form == Form::Outline) step.operand = 0;  // append() counts the groups
     steps.push_back(std::move(step));
@@ -79,21 +79,21 @@ class Fusing {
 
   // Fuses translate, shape, drop into a moved shape.
   bool move_shape() {
-    if (!is_shape(1, vm::kMoved | vm::kJoined) || out_.size() < 2) return false;
+    if (!is_shape(1, vm::kFusedTranslate | vm::kFusedMin) || out_.size() < 2) return false;
     if (out_[out_.size() - 2].opcode != Opcode::Translate) return false;
     Step shape = std::move(out_.back());
     out_.pop_back();
     const std::vector<double> by = std::move(out_.back().immediates);
     shape.immediates.insert(shape.immediates.begin(), by.begin(), by.end());
-    shape.operand |= vm::kMoved;
+    shape.operand |= vm::kFusedTranslate;
     out_.back() = std::move(shape);
     return true;
   }
 
   // Fuses shape, min into a joined shape.
   bool join_shape() {
-    if (!is_shape(1, vm::kJoined) || source_of(out_.back()) != vm::Source::Stack) return false;
-    out_.back().operand |= vm::kJoined;
+    if (!is_shape(1, vm::kFusedMin) || source_of(out_.back()) != vm::Source::Stack) return false;
+    out_.back().operand |= vm::kFusedMin;
     return true;
   }
 

@@ -339,7 +339,7 @@ class Lowering {
   }
 
   void append(NodeId node, const Instruction& instruction) {
-    const Origin& origin = graph_.origin(node);
+    const SourceLocation& origin = graph_.origin(node);
     vm::DebugEntry entry{};
     if (origin.span.end > 0) {
       const Position position = source_.locate(origin.span.begin);

@@ -35,7 +35,7 @@ bool is_power_of_two(double value) {
 
 class Rules {
  public:
-  Rules(Graph& graph, const Origin& origin) : graph_(graph), origin_(origin) {}
+  Rules(Graph& graph, const SourceLocation& origin) : graph_(graph), origin_(origin) {}
 
   // Returns the node that replaces the function, which may be an operand.
   NodeId make(Kind kind, Children operands) {
@@ -127,7 +127,7 @@ class Rules {
   }
 
   Graph& graph_;
-  const Origin& origin_;
+  const SourceLocation& origin_;
 };
 
 }  // namespace

@@ -17,8 +17,8 @@ constexpr std::size_t kLongestProgram = 256;
 
 }  // namespace
 
-std::vector<Containment::Hidden> Containment::hidden_arms(const Graph& graph, std::span<const NodeId> arms) {
-  std::vector<Hidden> hidden;
+std::vector<Containment::Redundancy> Containment::hidden_arms(const Graph& graph, std::span<const NodeId> arms) {
+  std::vector<Redundancy> hidden;
   for (const NodeId arm : arms) {
     const Box box = known(graph, arm).box;
     const auto hides = [&](NodeId other) { return other != arm && holds(graph, other, box); };
@@ -80,8 +80,8 @@ std::optional<vm::Range> Containment::range(const Graph& graph, NodeId solid, co
   return vm::evaluate_range(*found->second, box.lo, box.hi, workspace_);
 }
 
-const Knowledge& Containment::known(const Graph& graph, NodeId id) {
-  while (known_.size() <= id) known_.push_back(know(graph, static_cast<NodeId>(known_.size()), known_));
+const NodeFacts& Containment::known(const Graph& graph, NodeId id) {
+  while (known_.size() <= id) known_.push_back(derive_facts(graph, static_cast<NodeId>(known_.size()), known_));
   return known_[id];
 }
 

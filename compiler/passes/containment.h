@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::compiler {
@@ -21,10 +21,10 @@ class Containment {
   static constexpr std::size_t kLongestList = 512;
 
   // An arm of a union that lies wholly inside another arm.
-  struct Hidden {
+  struct Redundancy {
     NodeId arm, within;
   };
-  std::vector<Hidden> hidden_arms(const Graph& graph, std::span<const NodeId> arms);
+  std::vector<Redundancy> hidden_arms(const Graph& graph, std::span<const NodeId> arms);
 
   // Returns the operands of a subtraction, after the first, that do not reach the box of the first.
   std::vector<NodeId> idle_cuts(const Graph& graph, std::span<const NodeId> operands);
@@ -37,12 +37,12 @@ class Containment {
   // True if the solid avoids the whole box. False if one interval evaluation cannot prove so.
   bool avoids(const Graph& graph, NodeId solid, const Box& box);
 
-  const Knowledge& known(const Graph& graph, NodeId id);
+  const NodeFacts& known(const Graph& graph, NodeId id);
 
  private:
   std::optional<vm::Range> range(const Graph& graph, NodeId solid, const Box& box);
 
-  std::vector<Knowledge> known_;  // [node]
+  std::vector<NodeFacts> known_;  // [node]
   std::unordered_map<NodeId, std::optional<vm::VerifiedProgram>> programs_;
   vm::Workspace workspace_;
 };

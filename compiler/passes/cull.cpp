@@ -27,7 +27,7 @@ class Culling {
   // Removes the arms of a union that lie wholly inside another arm, which never show.
   std::vector<NodeId> without_hidden(const Graph& graph, const std::vector<NodeId>& arms) {
     std::vector<NodeId> hidden;
-    for (const Containment::Hidden& pair : containment_.hidden_arms(graph, arms)) hidden.push_back(pair.arm);
+    for (const Containment::Redundancy& pair : containment_.hidden_arms(graph, arms)) hidden.push_back(pair.arm);
     const std::vector<NodeId> kept = without(arms, hidden);
     return kept.empty() ? arms : kept;
   }

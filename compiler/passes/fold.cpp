@@ -16,7 +16,7 @@ bool is_identity_transform(std::span<const double> transform) {
 // Makes an offset of `child` by `radius`.
 NodeId fold_round(const Scene& in, Graph& out, NodeId id, double radius, NodeId child) {
   if (radius == 0) return child;
-  const Origin& origin = in.graph.origin(id);
+  const SourceLocation& origin = in.graph.origin(id);
   if (out.kind(child) == Kind::Sphere || out.kind(child) == Kind::Round) {
     const Kind kind = out.kind(child);
     const std::array<double, 1> sum = {out.params(child)[0] + radius};
@@ -34,7 +34,7 @@ Scene fold(const Scene& scene) {
     const Kind kind = scene.graph.kind(id);
     if (is_blend(kind)) {
       if (children.size() == 1) return children[0];
-      if (params[0] <= kLeastBlend) return out.add(hard(kind), {}, children, scene.graph.origin(id));
+      if (params[0] <= kMinBlend) return out.add(hard(kind), {}, children, scene.graph.origin(id));
       return keep(scene, out, id, children);
     }
     switch (kind) {

@@ -10,9 +10,9 @@ namespace fathom::compiler {
 
 Scene level(const Scene& scene) {
   const std::vector<bool> free = only_sign_counts(scene);
-  std::vector<Knowledge> known;  // of the graph being made
+  std::vector<NodeFacts> known;  // of the graph being made
   const auto lipschitz = [&](const Graph& graph, NodeId id) {
-    while (known.size() <= id) known.push_back(know(graph, static_cast<NodeId>(known.size()), known));
+    while (known.size() <= id) known.push_back(derive_facts(graph, static_cast<NodeId>(known.size()), known));
     return known[id].lipschitz;
   };
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {

@@ -46,7 +46,7 @@ struct Camera {
   double sensor_width = 36;            // mm; the sensor is as wide as the image
   double width = 4;                    // orthographic: width of the image, scene units
   // Share of a frame's time, from the frame's beginning, during which light enters. 0: all light is of one moment.
-  // Compiled files do not store the shutter: without its text a scene has one moment.
+  // A compiled file without text has one moment.
   double shutter = 0;
 
   // Perspective: the lens. A camera without lens_radius and f_stop is a pinhole.
@@ -98,9 +98,9 @@ struct Light {
 };
 
 // An area light: an emissive shape of the graph that the renderer can sample, unaltered except for its place and size
-// (compiler/analysis/lamps.h). A point q of the shape is rotation * q + translation in the programs' coordinates.
+// (compiler/analysis/area_lights.h). A point q of the shape is rotation * q + translation in the programs' coordinates.
 // `rotation` may mirror.
-struct Lamp {
+struct AreaLight {
   enum class Shape { Sphere, Box, Cylinder, Capsule, Quad };
   Shape shape = Shape::Sphere;
   glm::dmat3 rotation{1.0};
@@ -144,7 +144,7 @@ struct CompiledField {
   Box bound;              // the field is positive outside
   Box contents;           // around all bounded parts of the field; empty if it has none
   double lipschitz = 1;   // |f(p) - f(q)| <= lipschitz * |p - q|
-  double magnitude = 0;   // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
+  double cancellation = 0;   // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   bool certified = true;  // `lipschitz` is proved; false: an estimate (a Mandelbulb is in the scene)
 };
 
@@ -161,7 +161,7 @@ struct CompiledScene : SceneTables, CompiledField {
   glm::dvec3 origin{0};       // place in the scene of the programs' zero, scene units (compiler/analysis/origin.h)
   Box extent;                 // of all bounded parts (compiler/analysis/extent.h); empty if there are none
   std::vector<Medium> media;  // of the transparent materials, in the materials' order
-  std::vector<Lamp> lamps;    // in file order; of coincident lamps only the first
+  std::vector<AreaLight> area_lights;    // in file order; of coincident area lights only the first
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates
   std::size_t node_count = 0;                 // number of distinct nodes after the passes
   // E.g. "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)", in the scene's coordinates.

@@ -14,7 +14,7 @@ namespace {
 using glm::dvec3;
 
 // Minimum size of the framed box as a share of its distance from zero, for a box of next to no size.
-constexpr double kLeastSize = 1e-6;
+constexpr double kMinSize = 1e-6;
 // Minimum distance of the box from the camera as a share of the box's size, so that the camera stays outside the box.
 constexpr double kClearance = 0.01;
 
@@ -102,7 +102,7 @@ bool finite(dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::i
 std::optional<Camera> framed(const Camera& camera, const Box& box, double aspect) {
   if (box.empty() || !box.finite()) return std::nullopt;
   const dvec3 middle = box.lo / 2.0 + box.hi / 2.0;
-  const double size = std::max(glm::length(box.hi - box.lo), kLeastSize * largest_part(middle));
+  const double size = std::max(glm::length(box.hi - box.lo), kMinSize * largest_part(middle));
   if (!(size > 0) || !std::isfinite(size)) return std::nullopt;
   dvec3 half = (box.hi - box.lo) / 2.0;
   if (glm::length(half) < size / 4) half = dvec3(size / 4);

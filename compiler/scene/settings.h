@@ -17,8 +17,8 @@ inline constexpr int kMaxSpp = 1 << 20, kMaxDepth = 4096, kMaxTile = 1024;
 inline constexpr double kMaxExposure = 100;                            // stops, of either sign
 inline constexpr double kMinFilterWidth = 0.01, kMaxFilterWidth = 64;  // pixels
 inline constexpr double kMaxNoiseThreshold = 1e6;
-inline constexpr int kMostFrames = 100'000'000;
-inline constexpr double kUsualFps = 24, kLeastFps = 1e-3, kMostFps = 1e6;  // frames per second
+inline constexpr int kMaxFrames = 100'000'000;
+inline constexpr double kUsualFps = 24, kMinFps = 1e-3, kMaxFps = 1e6;  // frames per second
 
 // Reconstruction filter: the weight of light around a pixel's centre (runtime/sampling/filter.h).
 enum class FilterKind { Box, Tent, Gaussian, BlackmanHarris, Mitchell };

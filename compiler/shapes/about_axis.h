@@ -27,7 +27,7 @@ inline constexpr double kAside = 1e-3;
 
 inline Box tube(double radius, double y0, double y1) { return {{-radius, y0, -radius}, {radius, y1, radius}}; }
 
-inline Complaint check_bounded_about_y(std::span<const Knowledge> children, const char* what) {
+inline ErrorText check_bounded_about_y(std::span<const NodeFacts> children, const char* what) {
   if (std::isfinite(radius_about_y(children[0].box))) return std::nullopt;
   return fmt::format("{} needs a node that ends in x and z; cut it with an intersection first", what);
 }

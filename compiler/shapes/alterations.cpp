@@ -14,50 +14,50 @@ namespace {
 
 using vm::Opcode;
 
-Knowledge know_round(Params params, std::span<const Knowledge> children) {
-  Knowledge k = offset(children[0], params[0]);
+NodeFacts know_round(Params params, std::span<const NodeFacts> children) {
+  NodeFacts k = offset(children[0], params[0]);
   k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
 
-Knowledge know_onion(Params params, std::span<const Knowledge> children) {
-  Knowledge k = offset(children[0], params[0]);
+NodeFacts know_onion(Params params, std::span<const NodeFacts> children) {
+  NodeFacts k = offset(children[0], params[0]);
   k.outside = std::max(k.outside, children[0].inside);
   k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
 
-Knowledge know_complement(Params, std::span<const Knowledge> children) {
-  Knowledge k = children[0];
+NodeFacts know_complement(Params, std::span<const NodeFacts> children) {
+  NodeFacts k = children[0];
   std::swap(k.outside, k.inside);
   k.box = Box::everything();
   return k;
 }
 
-Knowledge know_same(Params, std::span<const Knowledge> children) { return children[0]; }
+NodeFacts know_same(Params, std::span<const NodeFacts> children) { return children[0]; }
 
-Knowledge know_scaled(Params params, std::span<const Knowledge> children) {
-  Knowledge k = only_bound(children[0]);
+NodeFacts know_scaled(Params params, std::span<const NodeFacts> children) {
+  NodeFacts k = only_bound(children[0]);
   k.lipschitz *= params[0];
   if (std::abs(k.lipschitz - 1) < 1e-12) k.lipschitz = 1;  // the product is 1 except for rounding
   k.reach *= params[0];
   k.reach_max *= params[0];
-  k.magnitude *= params[0];
+  k.cancellation *= params[0];
   return k;
 }
 
-Knowledge know_transform(Params params, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
+NodeFacts know_transform(Params params, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
   const Affine to_child = Affine::from_params(params);
   const double factor = params[12];
-  const Stretch s = stretch(to_child);
-  Knowledge k = mapped(child);
+  const SingularValues s = singular_values(to_child);
+  NodeFacts k = mapped(child);
   k.box = image(inverse(to_child), child.box);
   // The translation adds to a point's coordinates in the child's space, but a point near the surface lies within the
   // child's box.
   const glm::dvec3 t = glm::abs(to_child.translation);
   const double cancelled = std::min(std::max({t.x, t.y, t.z}), largest_coordinate(child.box));
-  k.magnitude = factor * (cancelled * std::max(1.0, child.lipschitz) + child.magnitude);
+  k.cancellation = factor * (cancelled * std::max(1.0, child.lipschitz) + child.cancellation);
   // A product that is 1 except for rounding is 1: the factor is the smallest scale, and the largest stretch its
   // inverse.
   const double slope = factor * s.most;
@@ -80,9 +80,9 @@ Knowledge know_transform(Params params, std::span<const Knowledge> children) {
 bool has_core(Params half_size) { return half_size[0] > 0 && half_size[1] > 0 && half_size[2] > 0; }
 
 // The child's surface, cut at the planes through the origin and pulled apart by the half size along each axis.
-Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
-  Knowledge k = child;
+NodeFacts know_elongate(Params params, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
+  NodeFacts k = child;
   // Exact only if the child's point nearest to any point of the plane lies in the plane, which the compiler does not
   // know.
   k = only_bound(k);
@@ -96,8 +96,8 @@ Knowledge know_elongate(Params params, std::span<const Knowledge> children) {
   return k;
 }
 
-Knowledge know_extrude(Params params, std::span<const Knowledge> children) {
-  Knowledge k = children[0];
+NodeFacts know_extrude(Params params, std::span<const NodeFacts> children) {
+  NodeFacts k = children[0];
   k.box.lo.z = -params[0];
   k.box.hi.z = params[0];
   k.symmetric[2] = true;
@@ -105,11 +105,11 @@ Knowledge know_extrude(Params params, std::span<const Knowledge> children) {
   return k;
 }
 
-Knowledge know_revolve(Params params, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
-  Knowledge k = child;
+NodeFacts know_revolve(Params params, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
+  NodeFacts k = child;
   const double radius = std::max(0.0, child.box.hi.x + params[0]);
-  k.magnitude += std::min(std::abs(params[0]), largest_coordinate(child.box));
+  k.cancellation += std::min(std::abs(params[0]), largest_coordinate(child.box));
   k.box.lo.x = k.box.lo.z = -radius;
   k.box.hi.x = k.box.hi.z = radius;
   k.symmetric = {true, child.symmetric[1], true};
@@ -150,7 +150,7 @@ Code elongate_code(Params params) {
 Code extrude_code(Params params) { return {.after = {{Opcode::Slab, {params[0]}}, {Opcode::Meet}}}; }
 Code revolve_code(Params params) { return {.points = {{{Opcode::Revolve, {params[0]}}}}}; }
 
-Complaint check_elongate(Params params) {
+ErrorText check_elongate(Params params) {
   if (params[0] == 0 && params[1] == 0 && params[2] == 0) {
     return "`half_size` is 0 along every axis, which changes nothing; leave the elongate out";
   }
@@ -169,20 +169,20 @@ std::vector<NodeSpec> alteration_rows() {
        .params = {length_or_zero("radius", "how far the surface moves out")},
        .doc = "a node made larger, its edges round",
        .code = round_code,
-       .know = know_round},
+       .derive_facts = know_round},
       {.kind = Kind::Onion,
        .name = "onion",
        .category = kAlteration,
        .params = {thickness()},
        .doc = "a shell around a node's surface",
        .code = onion_code,
-       .know = know_onion},
+       .derive_facts = know_onion},
       {.kind = Kind::Complement,
        .name = "complement",
        .category = kAlteration,
        .doc = "what is not in the node",
        .code = complement_code,
-       .know = know_complement},
+       .derive_facts = know_complement},
       {.kind = Kind::Elongate,
        .name = "elongate",
        .category = kAlteration,
@@ -190,7 +190,7 @@ std::vector<NodeSpec> alteration_rows() {
        .doc = "a node cut in the middle and pulled apart",
        .check = check_elongate,
        .code = elongate_code,
-       .know = know_elongate},
+       .derive_facts = know_elongate},
       {.kind = Kind::Extrude,
        .name = "extrude",
        .category = kAlteration,
@@ -198,7 +198,7 @@ std::vector<NodeSpec> alteration_rows() {
        .doc = "an outline drawn along z",
        .operand = Sort::Outline,
        .code = extrude_code,
-       .know = know_extrude},
+       .derive_facts = know_extrude},
       {.kind = Kind::Revolve,
        .name = "revolve",
        .category = kAlteration,
@@ -206,26 +206,26 @@ std::vector<NodeSpec> alteration_rows() {
        .doc = "an outline turned about the y axis",
        .operand = Sort::Outline,
        .code = revolve_code,
-       .know = know_revolve,
+       .derive_facts = know_revolve,
        .build = build_revolve},
       {.kind = Kind::Transform,
        .name = "transform",
        .category = Category::Internal,
        .doc = "scale, rotate, translate",
        .code = transform_code,
-       .know = know_transform},
+       .derive_facts = know_transform},
       {.kind = Kind::Scaled,
        .name = "scaled",
        .category = Category::Internal,
        .doc = "a distance made one that changes no faster than the way walked",
        .code = scaled_code,
-       .know = know_scaled},
+       .derive_facts = know_scaled},
       {.kind = Kind::Paint,
        .name = "paint",
        .category = Category::Internal,
        .doc = "belongs to a surface",
        .code = paint_code,
-       .know = know_same},
+       .derive_facts = know_same},
   };
 }
 

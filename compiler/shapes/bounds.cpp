@@ -6,15 +6,15 @@
 namespace fathom::compiler {
 namespace {
 
-Knowledge of_primitive(const NodeSpec& row, Params params) {
-  Knowledge k;
+NodeFacts of_primitive(const NodeSpec& row, Params params) {
+  NodeFacts k;
   k.box = row.bound(params);
   k.outside = row.facts.outside;
   k.inside = row.facts.inside;
   k.symmetric = row.facts.symmetric;
   k.certified = k.outside != Exactness::Estimate;
   if (!k.certified) k.reach = k.reach_max = 0;
-  if (row.magnitude) k.magnitude = row.magnitude(params);
+  if (row.cancellation) k.cancellation = row.cancellation(params);
   return k;
 }
 
@@ -25,24 +25,24 @@ bool reads_point(const Instruction& instruction) {
 
 }  // namespace
 
-Knowledge know(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
+NodeFacts derive_facts(const Graph& graph, NodeId id, const std::vector<NodeFacts>& known) {
   const NodeSpec& row = spec(graph.kind(id));
-  if (row.know == nullptr) return of_primitive(row, graph.params(id));
+  if (row.derive_facts == nullptr) return of_primitive(row, graph.params(id));
   // Number nodes have no facts, so their children's facts are not gathered: formulas have thousands of nodes.
-  if (row.category == Category::Function) return row.know(graph.params(id), {});
-  std::vector<Knowledge> children;
+  if (row.category == Category::Function) return row.derive_facts(graph.params(id), {});
+  std::vector<NodeFacts> children;
   for (const NodeId child : graph.children(id)) children.push_back(known[child]);
-  return row.know(graph.params(id), children);
+  return row.derive_facts(graph.params(id), children);
 }
 
-std::vector<Knowledge> analyse(const Graph& graph) {
-  std::vector<Knowledge> known;
+std::vector<NodeFacts> analyse(const Graph& graph) {
+  std::vector<NodeFacts> known;
   known.reserve(graph.size());
-  for (NodeId id = 0; id < graph.size(); ++id) known.push_back(know(graph, id, known));
+  for (NodeId id = 0; id < graph.size(); ++id) known.push_back(derive_facts(graph, id, known));
   return known;
 }
 
-Box contents(const Graph& graph, NodeId id, const std::vector<Knowledge>& known) {
+Box contents(const Graph& graph, NodeId id, const std::vector<NodeFacts>& known) {
   Box result;
   std::vector<bool> wanted(id + 1, false);
   wanted[id] = true;

@@ -13,25 +13,25 @@ namespace {
 
 using vm::Opcode;
 
-Knowledge know_union(Params, std::span<const Knowledge> children) {
-  Knowledge k = together(children);
-  for (const Knowledge& child : children) k.box = unite(k.box, child.box);
+NodeFacts know_union(Params, std::span<const NodeFacts> children) {
+  NodeFacts k = together(children);
+  for (const NodeFacts& child : children) k.box = unite(k.box, child.box);
   if (children.size() > 1) k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
 
-Knowledge know_intersection(Params, std::span<const Knowledge> children) {
-  Knowledge k = only_bound(together(children));
-  for (const Knowledge& child : children) k.box = intersect(k.box, child.box);
+NodeFacts know_intersection(Params, std::span<const NodeFacts> children) {
+  NodeFacts k = only_bound(together(children));
+  for (const NodeFacts& child : children) k.box = intersect(k.box, child.box);
   // Disjoint operands leave nothing, but an offset of the field may leave something, so keep a box to measure from.
   if (k.box.empty()) k.box = children[0].box;
   k.reach /= kSqrt3;  // an intersection's corner is up to sqrt 3 further than its faces
   return k;
 }
 
-Knowledge know_subtraction(Params, std::span<const Knowledge> children) {
-  Knowledge k = only_bound(together(children));
-  const Knowledge& base = children[0];  // a subtraction only cuts away: the base's box and reach hold
+NodeFacts know_subtraction(Params, std::span<const NodeFacts> children) {
+  NodeFacts k = only_bound(together(children));
+  const NodeFacts& base = children[0];  // a subtraction only cuts away: the base's box and reach hold
   k.box = base.box;
   k.reach = base.reach;
   k.reach_max = base.reach_max;
@@ -39,8 +39,8 @@ Knowledge know_subtraction(Params, std::span<const Knowledge> children) {
 }
 
 // Facts of a blend of width `width`: the operands' distances count up to that width.
-Knowledge blended(Knowledge k, double width) {
-  k.magnitude += width;
+NodeFacts blended(NodeFacts k, double width) {
+  k.cancellation += width;
   return only_bound(k);
 }
 
@@ -50,53 +50,53 @@ double lowered(Params params, std::size_t operands, double deepest) {
   return std::min(params[0], deepest * params[0] * static_cast<double>(operands - 1));
 }
 
-Knowledge know_smooth_union(Params params, std::span<const Knowledge> children) {
+NodeFacts know_smooth_union(Params params, std::span<const NodeFacts> children) {
   return blended(offset(know_union(params, children), lowered(params, children.size(), 0.25)), params[0]);
 }
-Knowledge know_smooth_intersection(Params params, std::span<const Knowledge> children) {
+NodeFacts know_smooth_intersection(Params params, std::span<const NodeFacts> children) {
   return blended(know_intersection(params, children), params[0]);
 }
-Knowledge know_smooth_subtraction(Params params, std::span<const Knowledge> children) {
+NodeFacts know_smooth_subtraction(Params params, std::span<const NodeFacts> children) {
   return blended(know_subtraction(params, children), params[0]);
 }
 
 // A chamfer, (a + b - k) / 2, is at least min(a, b) - k/2. A round or a stair dips by less.
-Knowledge know_edge_union(Params params, std::span<const Knowledge> children) {
+NodeFacts know_edge_union(Params params, std::span<const NodeFacts> children) {
   return blended(offset(know_union(params, children), lowered(params, children.size(), 0.5)), params[0]);
 }
 // The gradients of two nearly parallel surfaces add up under the square root.
-Knowledge steeper(Knowledge k, std::size_t operands) {
+NodeFacts steeper(NodeFacts k, std::size_t operands) {
   for (std::size_t i = 1; i < operands; ++i) k.lipschitz *= kSqrt2;
   return k;
 }
-Knowledge know_round_union(Params params, std::span<const Knowledge> children) {
-  return steeper(know_edge_union(params, children), params[0] > kLeastBlend ? children.size() : 1);
+NodeFacts know_round_union(Params params, std::span<const NodeFacts> children) {
+  return steeper(know_edge_union(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
-Knowledge know_round_intersection(Params params, std::span<const Knowledge> children) {
-  return steeper(know_smooth_intersection(params, children), params[0] > kLeastBlend ? children.size() : 1);
+NodeFacts know_round_intersection(Params params, std::span<const NodeFacts> children) {
+  return steeper(know_smooth_intersection(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
-Knowledge know_round_subtraction(Params params, std::span<const Knowledge> children) {
-  return steeper(know_smooth_subtraction(params, children), params[0] > kLeastBlend ? children.size() : 1);
+NodeFacts know_round_subtraction(Params params, std::span<const NodeFacts> children) {
+  return steeper(know_smooth_subtraction(params, children), params[0] > kMinBlend ? children.size() : 1);
 }
 
 // Outside the operands, xor is the union of the points in one operand alone, which is exact because its boundaries
 // are those of the operands. The facts claim only a bound.
-Knowledge know_xor(Params params, std::span<const Knowledge> children) {
+NodeFacts know_xor(Params params, std::span<const NodeFacts> children) {
   return only_bound(know_union(params, children));
 }
 
-Knowledge know_morph(Params, std::span<const Knowledge> children) {
-  Knowledge k = only_bound(together(children));
-  for (const Knowledge& child : children) k.box = unite(k.box, child.box);
+NodeFacts know_morph(Params, std::span<const NodeFacts> children) {
+  NodeFacts k = only_bound(together(children));
+  for (const NodeFacts& child : children) k.box = unite(k.box, child.box);
   return k;
 }
 
-Complaint check_two(Params, std::span<const Knowledge> children) {
+ErrorText check_two(Params, std::span<const NodeFacts> children) {
   if (children.size() == 2) return std::nullopt;
   return "it goes from one node to another; give exactly two in `of`";
 }
 
-Complaint check_morph(Params params) {
+ErrorText check_morph(Params params) {
   if (params[0] >= 0 && params[0] <= 1) return std::nullopt;
   return fmt::format("`t` is {}; it must be between 0 and 1", params[0]);
 }
@@ -116,7 +116,7 @@ Code subtraction_code(Params) {
 // A width of 0 blends nothing. The optimiser replaces the node by the hard operator, but unoptimised code must not
 // divide by the width.
 std::vector<double> blend_immediates(Params params) {
-  return {params[0], params[0] > kLeastBlend ? 0.25 / params[0] : 0};
+  return {params[0], params[0] > kMinBlend ? 0.25 / params[0] : 0};
 }
 Code smooth_subtraction_code(Params params) {
   Code code = code_of<Opcode::SmoothSubtract, blend_immediates>(params);
@@ -128,7 +128,7 @@ Code smooth_subtraction_code(Params params) {
 // Returns the instructions of an edge, which is the hard operator if the width is 0.
 template <Opcode Join, Opcode Hard, std::vector<double> (*Immediates)(Params)>
 std::vector<Instruction> edge(Params params) {
-  if (!(params[0] > kLeastBlend)) return {{Hard}};
+  if (!(params[0] > kMinBlend)) return {{Hard}};
   return {{Join, Immediates(params)}};
 }
 std::vector<double> same(Params params) { return {params.begin(), params.end()}; }
@@ -156,14 +156,14 @@ Code xor_code(Params) { return any_order(Opcode::Xor); }
 Code morph_code(Params params) { return code_of<Opcode::Mix, same>(params); }
 
 NodeSpec combinator(Kind kind, std::string_view name, std::vector<ParamSpec> params, std::string_view doc,
-                    Code (*code)(Params), Knowledge (*know)(Params, std::span<const Knowledge>)) {
+                    Code (*code)(Params), NodeFacts (*derive_facts)(Params, std::span<const NodeFacts>)) {
   return {.kind = kind,
           .name = name,
           .category = Category::Combinator,
           .params = std::move(params),
           .doc = doc,
           .code = code,
-          .know = know};
+          .derive_facts = derive_facts};
 }
 
 }  // namespace

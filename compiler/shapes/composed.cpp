@@ -13,63 +13,63 @@
 namespace fathom::compiler {
 namespace {
 
-NodeId place(Graph& graph, NodeId child, const std::array<double, 13>& transform, const Origin& origin) {
+NodeId place(Graph& graph, NodeId child, const std::array<double, 13>& transform, const SourceLocation& origin) {
   return graph.add(Kind::Transform, transform, std::array{child}, origin);
 }
 
 // A ball scaled along the axes. The ball's distance times the smallest radius never exceeds the ellipsoid's. The
 // exact distance takes an iteration.
-NodeId ellipsoid(Graph& graph, Params p, const Origin& origin) {
+NodeId ellipsoid(Graph& graph, Params p, const SourceLocation& origin) {
   const NodeId ball = graph.add(Kind::Sphere, std::array{1.0}, {}, origin);
   const double x = p[0], y = p[1], z = p[2];
   return place(graph, ball, {1 / x, 0, 0, 0, 0, 1 / y, 0, 0, 0, 0, 1 / z, 0, std::min({x, y, z})}, origin);
 }
 
 // Turns the child about x until its z axis is y.
-NodeId upright(Graph& graph, NodeId child, const Origin& origin) {
+NodeId upright(Graph& graph, NodeId child, const SourceLocation& origin) {
   return place(graph, child, {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 1}, origin);
 }
 
-NodeId prism(Graph& graph, double sides, Params p, const Origin& origin) {
+NodeId prism(Graph& graph, double sides, Params p, const SourceLocation& origin) {
   const NodeId polygon = graph.add(Kind::RegularPolygon, std::array{sides, p[0]}, {}, origin);
   const NodeId drawn = graph.add(Kind::Extrude, std::array{p[1]}, std::array{polygon}, origin);
   return upright(graph, drawn, origin);
 }
-NodeId hexagonal_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 6, p, origin); }
-NodeId triangular_prism(Graph& graph, Params p, const Origin& origin) { return prism(graph, 3, p, origin); }
+NodeId hexagonal_prism(Graph& graph, Params p, const SourceLocation& origin) { return prism(graph, 6, p, origin); }
+NodeId triangular_prism(Graph& graph, Params p, const SourceLocation& origin) { return prism(graph, 3, p, origin); }
 
 // Turns an outline with the same parameters, which is symmetric about the y axis, about that axis.
 template <Kind Outline>
-NodeId revolved(Graph& graph, Params p, const Origin& origin) {
+NodeId revolved(Graph& graph, Params p, const SourceLocation& origin) {
   const NodeId outline = graph.add(Outline, p, {}, origin);
   return graph.add(Kind::Revolve, std::array{0.0, 1.0}, std::array{outline}, origin);
 }
 template <Kind Outline>
-Complaint check_outline(Params p) {
+ErrorText check_outline(Params p) {
   const auto check = spec(Outline).check;
   return check ? check(p) : std::nullopt;
 }
 
 // Turns an arc about -y. A point of the sphere at an angle of a from -y lies at y = -radius cos a, so the arc reaches
 // up to the angle whose y is the height.
-NodeId cut_hollow_sphere(Graph& graph, Params p, const Origin& origin) {
+NodeId cut_hollow_sphere(Graph& graph, Params p, const SourceLocation& origin) {
   const double degrees = vm::real::acos(-p[1] / p[0]) * 180 / std::numbers::pi;
   const NodeId arc = graph.add(Kind::Arc, std::array{p[0], degrees, p[2]}, {}, origin);
   const NodeId turned = place(graph, arc, {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0, 1}, origin);
   return graph.add(Kind::Revolve, std::array{0.0, 1.0}, std::array{turned}, origin);
 }
-Complaint check_cut_hollow_sphere(Params p) {
+ErrorText check_cut_hollow_sphere(Params p) {
   if (std::abs(p[1]) < p[0] && p[2] < p[0]) return std::nullopt;
   return fmt::format("`height` {} must lie between -radius and radius, and `thickness` {} be less than `radius` {}",
                      p[1], p[2], p[0]);
 }
 
 // Turns the wall, a rectangle beside the axis, about that axis.
-NodeId tube_around(Graph& graph, Params p, const Origin& origin) {
+NodeId tube_around(Graph& graph, Params p, const SourceLocation& origin) {
   const NodeId wall = graph.add(Kind::Rectangle, std::array{p[2], p[1]}, {}, origin);
   return graph.add(Kind::Revolve, std::array{p[0], 1.0}, std::array{wall}, origin);
 }
-Complaint check_tube(Params p) {
+ErrorText check_tube(Params p) {
   if (p[2] < p[0]) return std::nullopt;
   return fmt::format("`thickness` {} is not smaller than `radius` {}, which leaves no hole; use `cylinder`", p[2],
                      p[0]);
@@ -78,14 +78,14 @@ Complaint check_tube(Params p) {
 // The sides of a diamond with half diagonals a and b are a b / sqrt(a^2 + b^2) from its middle. Rounding takes its
 // radius from that distance.
 double inradius(Params p) { return p[0] * p[1] / std::sqrt(p[0] * p[0] + p[1] * p[1]); }
-NodeId rhombus(Graph& graph, Params p, const Origin& origin) {
+NodeId rhombus(Graph& graph, Params p, const SourceLocation& origin) {
   const double shrink = 1 - p[3] / inradius(p);
   const NodeId diamond = graph.add(Kind::RhombusOutline, std::array{p[0] * shrink, p[1] * shrink}, {}, origin);
   const NodeId drawn = graph.add(Kind::Extrude, std::array{p[2] - p[3]}, std::array{diamond}, origin);
   const NodeId solid = upright(graph, drawn, origin);
   return p[3] > 0 ? graph.add(Kind::Round, std::array{p[3]}, std::array{solid}, origin) : solid;
 }
-Complaint check_rhombus(Params p) {
+ErrorText check_rhombus(Params p) {
   const double most = std::min(inradius(p), p[2]);
   if (p[3] < most) return std::nullopt;
   return fmt::format("`rounding` {} must be less than {:.4g}, the distance of the nearest side from the middle", p[3],
@@ -93,13 +93,13 @@ Complaint check_rhombus(Params p) {
 }
 
 // A ring pulled apart along its z axis, then turned about x until its z axis is y.
-NodeId link(Graph& graph, Params p, const Origin& origin) {
+NodeId link(Graph& graph, Params p, const SourceLocation& origin) {
   const NodeId ring = graph.add(Kind::Torus, p.first(2), {}, origin);
   const NodeId pulled = graph.add(Kind::Elongate, std::array{0.0, 0.0, p[2]}, std::array{ring}, origin);
   return upright(graph, pulled, origin);
 }
 
-Complaint check_ellipsoid(Params p) {
+ErrorText check_ellipsoid(Params p) {
   if (p[0] > 0 && p[1] > 0 && p[2] > 0) return std::nullopt;
   return "`radii` must all be above 0";
 }

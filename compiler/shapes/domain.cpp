@@ -43,10 +43,10 @@ double largest_stretch(double a, double b, double c) {
 
 glm::dvec3 normal_of(Params p) { return direction({p[0], p[1], p[2]}); }
 
-Knowledge know_mirror(Params p, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
-  Knowledge k = mapped(child);
-  k.magnitude += std::min(2 * std::abs(p[3]), largest_coordinate(child.box));
+NodeFacts know_mirror(Params p, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
+  NodeFacts k = mapped(child);
+  k.cancellation += std::min(2 * std::abs(p[3]), largest_coordinate(child.box));
   const glm::dvec3 n = normal_of(p);
   for (int i = 0; i < 3; ++i) {
     if (std::abs(n[i]) != 1) continue;
@@ -86,32 +86,32 @@ Code mirror_code(Params p) { return {.points = {{{Opcode::Mirror, mirror_immedia
 
 double tube_radius(const Box& box) { return radius_about_y(box) * (1 + kAside); }
 
-std::vector<double> derive_twist(Params p, std::span<const Knowledge> children) {
+std::vector<double> derive_twist(Params p, std::span<const NodeFacts> children) {
   const double radius = tube_radius(children[0].box);
   return {radius, children[0].lipschitz * largest_stretch(1, std::abs(p[0]) * kRadians * radius, 1)};
 }
 
-Complaint check_twist_child(Params, std::span<const Knowledge> children) {
+ErrorText check_twist_child(Params, std::span<const NodeFacts> children) {
   return check_bounded_about_y(children, "a twist");
 }
 
 // Facts of a child evaluated within a tube about the y axis, by a map that treats distances across and along the axis
 // separately.
-Knowledge in_tube(const Knowledge& child, double radius, double lipschitz, double reach) {
-  Knowledge k = only_bound(mapped(child));
+NodeFacts in_tube(const NodeFacts& child, double radius, double lipschitz, double reach) {
+  NodeFacts k = only_bound(mapped(child));
   k.box = tube(radius, child.box.lo.y, child.box.hi.y);
   k.lipschitz = lipschitz;
   k.reach = k.reach_max = reach;
   return k;
 }
 
-Knowledge know_twist(Params p, std::span<const Knowledge> children) {
+NodeFacts know_twist(Params p, std::span<const NodeFacts> children) {
   const double rate = std::abs(p[0]) * kRadians, radius = p[1];
   const Box& box = children[0].box;
-  Knowledge k = in_tube(children[0], radius, p[2], children[0].reach);
+  NodeFacts k = in_tube(children[0], radius, p[2], children[0].reach);
   // The angle's rounding error is proportional to the angle. An endless column counts by its first thousand units.
   const double highest = std::min(1000.0, std::max(std::abs(box.lo.y), std::abs(box.hi.y)));
-  k.magnitude = (k.magnitude + radius * (1 + 0.2 * rate * highest)) * children[0].lipschitz;
+  k.cancellation = (k.cancellation + radius * (1 + 0.2 * rate * highest)) * children[0].lipschitz;
   return k;
 }
 
@@ -135,21 +135,21 @@ struct Scales {
 };
 Scales scales(Params p) { return {std::min(p[0], p[1]), std::max(p[0], p[1]), (p[1] - p[0]) / (2 * p[2])}; }
 
-std::vector<double> derive_taper(Params p, std::span<const Knowledge> children) {
+std::vector<double> derive_taper(Params p, std::span<const NodeFacts> children) {
   const Scales s = scales(p);
   const double radius = tube_radius(children[0].box) * s.most;
   const double shear = std::abs(s.slope) * radius / (s.least * s.least);
   return {radius, children[0].lipschitz * largest_stretch(1 / s.least, shear, 1)};
 }
 
-Complaint check_taper_child(Params, std::span<const Knowledge> children) {
+ErrorText check_taper_child(Params, std::span<const NodeFacts> children) {
   return check_bounded_about_y(children, "a taper");
 }
 
-Knowledge know_taper(Params p, std::span<const Knowledge> children) {
+NodeFacts know_taper(Params p, std::span<const NodeFacts> children) {
   const Scales s = scales(p);
-  Knowledge k = in_tube(children[0], p[3], p[4], children[0].reach * std::min(1.0, 1 / s.most));
-  if (s.least < 1) k.magnitude += radius_about_y(children[0].box) * std::max(1.0, children[0].lipschitz);
+  NodeFacts k = in_tube(children[0], p[3], p[4], children[0].reach * std::min(1.0, 1 / s.most));
+  if (s.least < 1) k.cancellation += radius_about_y(children[0].box) * std::max(1.0, children[0].lipschitz);
   return k;
 }
 
@@ -194,10 +194,10 @@ Box bent_box(const Arc& a, const Box& box) {
   return bent;
 }
 
-std::vector<double> derive_bend(Params p, std::span<const Knowledge> children) {
+std::vector<double> derive_bend(Params p, std::span<const NodeFacts> children) {
   // An inner radius closer to the solid's inner edge gives a smaller constant but shorter steps near the centre.
   constexpr double kInner = 0.8;
-  const Knowledge& child = children[0];
+  const NodeFacts& child = children[0];
   const Arc a = arc(p[0], child.box);
   const double inner = kInner * a.innermost, reach = child.reach > 0 ? child.reach : 0.25;
   const Box exact = bent_box(a, child.box);
@@ -219,12 +219,12 @@ std::vector<double> derive_bend(Params p, std::span<const Knowledge> children) {
           box.hi.y};
 }
 
-Complaint check_bend(Params p) {
+ErrorText check_bend(Params p) {
   if (p[0] != 0) return std::nullopt;
   return "`turn` is 0, which bends nothing; leave the bend out or give degrees per unit of x";
 }
 
-Complaint check_bend_child(Params p, std::span<const Knowledge> children) {
+ErrorText check_bend_child(Params p, std::span<const NodeFacts> children) {
   const Box& box = children[0].box;
   for (int i = 0; i < 2; ++i) {
     if (!std::isfinite(box.lo[i]) || !std::isfinite(box.hi[i])) {
@@ -245,16 +245,16 @@ Complaint check_bend_child(Params p, std::span<const Knowledge> children) {
   return std::nullopt;
 }
 
-Knowledge know_bend(Params p, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
-  Knowledge k = only_bound(mapped(child));
+NodeFacts know_bend(Params p, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
+  NodeFacts k = only_bound(mapped(child));
   k.box.lo.x = p[10], k.box.lo.y = p[11], k.box.hi.x = p[12], k.box.hi.y = p[13];
   k.box.lo.z = p[7] <= -kNoLimit ? k.box.lo.z : p[7];
   k.box.hi.z = p[8] >= kNoLimit ? k.box.hi.z : p[8];
   k.symmetric = {child.symmetric[0], false, child.symmetric[2]};
   k.lipschitz = p[4];
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result
-  k.magnitude = (child.magnitude + 2 * p[1]) * child.lipschitz;
+  k.cancellation = (child.cancellation + 2 * p[1]) * child.lipschitz;
   return k;
 }
 
@@ -270,10 +270,10 @@ Code bend_code(Params p) {
 
 // Shear moves x and z by a multiple of y, so it is a Transform.
 
-NodeId build_shear(NodeMaker& maker, Params p, std::span<const NodeId> children, const Origin& origin) {
+NodeId build_shear(NodeMaker& maker, Params p, std::span<const NodeId> children, const SourceLocation& origin) {
   std::vector<double> params = {1, -p[0], 0, 0, 0, 1, 0, 0, 0, -p[1], 1, 0};
   // The smallest factor by which a shear shrinks distances, so that the scaled distance stays a lower bound.
-  params.push_back(1 / stretch(Affine::from_params(params)).most);
+  params.push_back(1 / singular_values(Affine::from_params(params)).most);
   return maker.make(Kind::Transform, params, children, origin);
 }
 
@@ -290,7 +290,7 @@ std::vector<NodeSpec> domain_rows() {
                   number("offset", "of the plane from the origin, along the normal", 0.0)},
        .doc = "one side of a plane, and its mirror image",
        .code = mirror_code,
-       .know = know_mirror},
+       .derive_facts = know_mirror},
       {.kind = Kind::Shear,
        .name = "shear",
        .category = kAlteration,
@@ -305,7 +305,7 @@ std::vector<NodeSpec> domain_rows() {
        .doc = "a node turned about the y axis, more the higher",
        .operand = Sort::Solid,
        .code = twist_code,
-       .know = know_twist,
+       .derive_facts = know_twist,
        .derive = derive_twist,
        .check_children = check_twist_child},
       {.kind = Kind::Bend,
@@ -316,7 +316,7 @@ std::vector<NodeSpec> domain_rows() {
        .operand = Sort::Solid,
        .check = check_bend,
        .code = bend_code,
-       .know = know_bend,
+       .derive_facts = know_bend,
        .derive = derive_bend,
        .check_children = check_bend_child},
       {.kind = Kind::Taper,
@@ -328,7 +328,7 @@ std::vector<NodeSpec> domain_rows() {
        .doc = "a node made thinner or thicker along y",
        .operand = Sort::Solid,
        .code = taper_code,
-       .know = know_taper,
+       .derive_facts = know_taper,
        .derive = derive_taper,
        .check_children = check_taper_child},
   };

@@ -58,7 +58,7 @@ NodeSpec schwarz_d_row() {
           .facts = kBound};
 }
 
-Complaint check_menger_sponge(Params p) {
+ErrorText check_menger_sponge(Params p) {
   if (p[1] <= 8) return std::nullopt;
   return fmt::format("`iterations` is {}; it must be a whole number from 1 to 8", p[1]);
 }
@@ -91,7 +91,7 @@ double escape_radius(double power) {
   }
   return r;
 }
-Complaint check_mandelbulb(Params p) {
+ErrorText check_mandelbulb(Params p) {
   if (p[0] < 2 || p[0] > 24) return fmt::format("`power` is {}; it must be a whole number from 2 to 24", p[0]);
   if (p[1] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[1]);
   // |w|^2 after the escaping iteration is about bailout^(2 power) and must fit into a float.
@@ -126,7 +126,7 @@ double julia_escape_radius(Params p) {
   const double c = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
   return (1 + std::sqrt(1 + 4 * c)) / 2;
 }
-Complaint check_julia(Params p) {
+ErrorText check_julia(Params p) {
   if (p[4] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[4]);
   // |q|^2 after the escaping iteration is about bailout^4 and must fit into a float.
   constexpr double kLargestRadius = 1e6;

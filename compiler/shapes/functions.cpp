@@ -14,8 +14,8 @@ using vm::Opcode;
 
 // The compiler knows no facts about a single number, but proves facts about a formula as a whole
 // (compiler/derive/formula_field.h).
-Knowledge know_number(Params, std::span<const Knowledge>) {
-  Knowledge k;
+NodeFacts know_number(Params, std::span<const NodeFacts>) {
+  NodeFacts k;
   k.box = Box::everything();
   k.lipschitz = std::numeric_limits<double>::infinity();
   k.outside = k.inside = Exactness::Estimate;
@@ -44,13 +44,13 @@ NodeSpec function(Kind kind, std::string_view name, std::string_view doc, std::v
           .commutes = vm::has(Op, vm::Fact::Commutes),
           .operand = Sort::Number,
           .code = function_code<Op>,
-          .know = know_number};
+          .derive_facts = know_number};
 }
 
-// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the magnitude of the float error, 1 if
+// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the cancellation of the float error, 1 if
 // the constant is proved.
-Knowledge know_bounded(Params p, std::span<const Knowledge>) {
-  Knowledge k;
+NodeFacts know_bounded(Params p, std::span<const NodeFacts>) {
+  NodeFacts k;
   constexpr double kEndless = 1e18, kInfinity = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<std::size_t>(i);
@@ -58,7 +58,7 @@ Knowledge know_bounded(Params p, std::span<const Knowledge>) {
     k.box.hi[i] = p[axis + 3] >= kEndless ? kInfinity : p[axis + 3];
   }
   k.lipschitz = p[6];
-  k.magnitude = p[7];
+  k.cancellation = p[7];
   k.certified = p[8] == 1;
   k.outside = k.inside = k.certified ? Exactness::Bound : Exactness::Estimate;
   k.reach = k.reach_max = std::min(1.0, p[6]);
@@ -108,14 +108,14 @@ std::vector<NodeSpec> field_rows() {
        .category = Category::Internal,
        .doc = "a node's distance and a formula, added",
        .code = [](Params) { return Code{.after = {{Opcode::Add}}}; },  // in order: the first has the surface
-       .know = know_number},
+       .derive_facts = know_number},
       {.kind = Kind::Bounded,
        .name = "bounded",
        .category = Category::Internal,
        .doc = "a formula within its box, made a distance",
        .operand = Sort::Number,
        .code = bounded_code,
-       .know = know_bounded},
+       .derive_facts = know_bounded},
   };
 }
 

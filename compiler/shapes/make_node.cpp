@@ -2,7 +2,7 @@
 
 namespace fathom::compiler {
 
-NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin) {
+NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> children, const SourceLocation& origin) {
   const NodeSpec& row = spec(kind);
   // A row's own `build` calls make() again over other children, with the derived numbers after the parameters.
   const bool is_built = row.code && params.size() > row.params.size();
@@ -12,18 +12,18 @@ NodeId NodeMaker::make(Kind kind, Params params, std::span<const NodeId> childre
   return graph_.add(kind, row.with_derived(params, known_of(children)), children, origin);
 }
 
-Complaint NodeMaker::complaint(Kind kind, Params params, std::span<const NodeId> children) {
+ErrorText NodeMaker::complaint(Kind kind, Params params, std::span<const NodeId> children) {
   const NodeSpec& row = spec(kind);
   return row.check_children ? row.check_children(params, known_of(children)) : std::nullopt;
 }
 
-const Knowledge& NodeMaker::known(NodeId id) {
-  while (known_.size() <= id) known_.push_back(know(graph_, static_cast<NodeId>(known_.size()), known_));
+const NodeFacts& NodeMaker::known(NodeId id) {
+  while (known_.size() <= id) known_.push_back(derive_facts(graph_, static_cast<NodeId>(known_.size()), known_));
   return known_[id];
 }
 
-std::vector<Knowledge> NodeMaker::known_of(std::span<const NodeId> children) {
-  std::vector<Knowledge> result;
+std::vector<NodeFacts> NodeMaker::known_of(std::span<const NodeId> children) {
+  std::vector<NodeFacts> result;
   for (const NodeId child : children) result.push_back(known(child));
   return result;
 }

@@ -24,19 +24,19 @@ class NodeMaker {
   explicit NodeMaker(Graph& graph) : graph_(graph) {}
 
   // `params` are those of the kind's row. complaint() must have nothing against the node.
-  NodeId make(Kind kind, Params params, std::span<const NodeId> children, const Origin& origin = {});
+  NodeId make(Kind kind, Params params, std::span<const NodeId> children, const SourceLocation& origin = {});
 
   // Returns the fault of such a node over these children, or nullopt. `params` have passed the row's `check`.
-  Complaint complaint(Kind kind, Params params, std::span<const NodeId> children);
+  ErrorText complaint(Kind kind, Params params, std::span<const NodeId> children);
 
-  const Knowledge& known(NodeId id);
+  const NodeFacts& known(NodeId id);
   const Graph& graph() const { return graph_; }
 
  private:
-  std::vector<Knowledge> known_of(std::span<const NodeId> children);
+  std::vector<NodeFacts> known_of(std::span<const NodeId> children);
 
   Graph& graph_;
-  std::vector<Knowledge> known_;  // [node] facts about the first nodes, as far as asked for
+  std::vector<NodeFacts> known_;  // [node] facts about the first nodes, as far as asked for
 };
 
 }  // namespace fathom::compiler

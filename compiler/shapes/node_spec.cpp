@@ -2,7 +2,7 @@
 
 namespace fathom::compiler {
 
-std::vector<double> NodeSpec::with_derived(Params given, std::span<const Knowledge> children) const {
+std::vector<double> NodeSpec::with_derived(Params given, std::span<const NodeFacts> children) const {
   std::vector<double> all(given.begin(), given.end());
   if (!derive) return all;
   const std::vector<double> derived = derive(given, children);

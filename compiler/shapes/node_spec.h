@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "compiler/graph/graph.h"
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "vm/program/opcode.h"
 
 namespace fathom::compiler {
@@ -18,7 +18,7 @@ namespace fathom::compiler {
 class NodeMaker;  // compiler/shapes/make_node.h
 
 using Params = std::span<const double>;
-using Complaint = std::optional<std::string>;
+using ErrorText = std::optional<std::string>;
 
 // Points: a list of any number of [x, y], the last parameter of its row. Formula: text in x, y, z and the scene's
 // parameters, which becomes the node's (last) child and no numbers.
@@ -65,12 +65,12 @@ struct Code {
 };
 
 // Most corners of a polygon.
-inline constexpr std::size_t kMostCorners = 4096;
+inline constexpr std::size_t kMaxCorners = 4096;
 
 // Facts about a primitive in addition to its box.
 struct PrimitiveFacts {
   Exactness outside = Exactness::Exact, inside = Exactness::Exact;
-  std::array<bool, 3> symmetric = {false, false, false};  // as Knowledge::symmetric
+  std::array<bool, 3> symmetric = {false, false, false};  // as NodeFacts::symmetric
 };
 
 // Primitives between two points. A scene may give `a` and `b` in place of the parameter `length`, which is then |b -
@@ -97,33 +97,33 @@ struct NodeSpec {
 
   // Returns the conflict between parameters that are each valid, and how to resolve it; nullopt if there is none. May
   // be null.
-  Complaint (*check)(Params params) = nullptr;
+  ErrorText (*check)(Params params) = nullptr;
 
   Code (*code)(Params params) = nullptr;
   // Returns the smallest box around a primitive that is cheap to compute.
   Box (*bound)(Params params) = nullptr;
   PrimitiveFacts facts = {};
-  double (*magnitude)(Params params) = nullptr;  // as Knowledge::magnitude; null: 0
+  double (*cancellation)(Params params) = nullptr;  // as NodeFacts::cancellation; null: 0
   // Returns the corners in order of an outline that has only straight edges. Null for all other rows.
   std::vector<glm::dvec2> (*corners)(Params params) = nullptr;
   // Returns the node's facts, given the children's. Null for primitives, whose rows have `bound` and `facts`.
-  Knowledge (*know)(Params params, std::span<const Knowledge> children) = nullptr;
+  NodeFacts (*derive_facts)(Params params, std::span<const NodeFacts> children) = nullptr;
 
   // Returns the numbers that the compiler derives when it makes the node, which follow the parameters in the graph (a
   // twist needs its child's radius). May be null.
-  std::vector<double> (*derive)(Params params, std::span<const Knowledge> children) = nullptr;
+  std::vector<double> (*derive)(Params params, std::span<const NodeFacts> children) = nullptr;
   // Like `check`, for the node given its children. May be null.
-  Complaint (*check_children)(Params params, std::span<const Knowledge> children) = nullptr;
+  ErrorText (*check_children)(Params params, std::span<const NodeFacts> children) = nullptr;
   // Like `expand`, over the children, for alterations that are composed of other nodes.
-  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin) = nullptr;
+  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children, const SourceLocation& origin) = nullptr;
   // Adds the nodes that a composed primitive consists of, and returns the node that stands for the primitive. Null
   // for all rows that have code.
-  NodeId (*expand)(Graph& graph, Params params, const Origin& origin) = nullptr;
+  NodeId (*expand)(Graph& graph, Params params, const SourceLocation& origin) = nullptr;
 
   std::optional<Between> between = std::nullopt;
 
   // Returns all numbers of a node over these children as in the graph: the parameters, then the derived numbers.
-  std::vector<double> with_derived(Params given, std::span<const Knowledge> children) const;
+  std::vector<double> with_derived(Params given, std::span<const NodeFacts> children) const;
 };
 
 // Returns the number of doubles that a parameter takes in a node (per point for Points).

@@ -30,7 +30,7 @@ Box hull(Params points) {
   return box;
 }
 
-Complaint check_sides(double sides, const char* name) {
+ErrorText check_sides(double sides, const char* name) {
   if (sides >= 3 && sides <= 64) return std::nullopt;
   return fmt::format("`{}` is {}; it must be a whole number from 3 to 64", name, sides);
 }
@@ -79,7 +79,7 @@ NodeSpec rectangle_row() {
           .corners = rectangle_corners};
 }
 
-Complaint check_rounded_rectangle(Params p) {
+ErrorText check_rounded_rectangle(Params p) {
   const double smallest = std::min(p[0], p[1]);
   if (p[2] <= smallest) return std::nullopt;
   return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size",
@@ -102,7 +102,7 @@ NodeSpec rounded_rectangle_row() {
 ParamSpec end_point(std::string_view name, std::string_view doc) {
   return {name, ParamType::Vec2, Rule::Any, kRequired, doc};
 }
-Complaint check_segment(Params p) {
+ErrorText check_segment(Params p) {
   if (vec2_at(p, 0) != vec2_at(p, 2)) return std::nullopt;
   return "ends `a` and `b` coincide; use `circle`";
 }
@@ -127,7 +127,7 @@ NodeSpec segment_row() {
           .code = segment_code,
           .bound = [](Params p) { return hull(p.first(4)).grown(p[4]); },
           .facts = kAlongZ,
-          .magnitude = segment_magnitude};
+          .cancellation = segment_magnitude};
 }
 
 // True if q, a point of the line through a and b, lies between them.
@@ -147,10 +147,10 @@ Corners polygon_corners(Params p) {
   for (std::size_t i = 0; i + 1 < p.size(); i += 2) corners.push_back(vec2_at(p, i));
   return corners;
 }
-Complaint check_polygon(Params p) {
+ErrorText check_polygon(Params p) {
   const std::size_t n = p.size() / 2;
   if (n < 3) return fmt::format("`points` has {}; an outline needs at least 3", n);
-  if (n > kMostCorners) return fmt::format("`points` has {}; at most {} are possible", n, kMostCorners);
+  if (n > kMaxCorners) return fmt::format("`points` has {}; at most {} are possible", n, kMaxCorners);
   const auto at = [&](std::size_t i) { return vec2_at(p, 2 * (i % n)); };
   double area = 0, size = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -192,7 +192,7 @@ NodeSpec polygon_row() {
       .code = code_of<Opcode::Polygon>,
       .bound = hull,
       .facts = kAlongZ,
-      .magnitude = polygon_magnitude,
+      .cancellation = polygon_magnitude,
       .corners = polygon_corners};
 }
 
@@ -228,8 +228,8 @@ NodeSpec regular_polygon_row() {
           .corners = regular_polygon_corners};
 }
 
-Complaint check_star(Params p) {
-  if (Complaint complaint = check_sides(p[0], "points")) return complaint;
+ErrorText check_star(Params p) {
+  if (ErrorText complaint = check_sides(p[0], "points")) return complaint;
   if (p[2] < p[1]) return std::nullopt;
   return fmt::format("`inner_radius` {} is not smaller than `radius` {}; for no tips at all use `regular_polygon`",
                      p[2], p[1]);
@@ -269,11 +269,11 @@ NodeSpec star_row() {
           .code = code_of<Opcode::Star, star_immediates>,
           .bound = star_bound,
           .facts = kUpright,
-          .magnitude = outline_magnitude<star_bound>,
+          .cancellation = outline_magnitude<star_bound>,
           .corners = star_corners};
 }
 
-Complaint check_trapezoid(Params p) {
+ErrorText check_trapezoid(Params p) {
   if (p[0] > 0 || p[1] > 0) return std::nullopt;
   return "both widths are 0; one of `bottom_half_width` and `top_half_width` must be positive";
 }
@@ -358,7 +358,7 @@ NodeSpec isosceles_triangle_row() {
           .code = isosceles_triangle_code,
           .bound = isosceles_triangle_bound,
           .facts = kUpright,
-          .magnitude = outline_magnitude<isosceles_triangle_bound>,
+          .cancellation = outline_magnitude<isosceles_triangle_bound>,
           .corners = isosceles_triangle_corners};
 }
 

@@ -134,7 +134,7 @@ std::vector<dvec3> flat_corners(Params p) {
 
 constexpr const char* kCornerNames = "abcd";
 
-Complaint check_sheet(const std::vector<dvec3>& v) {
+ErrorText check_sheet(const std::vector<dvec3>& v) {
   const double scale = longest_side(v);
   for (std::size_t i = 0; i < v.size(); ++i) {
     for (std::size_t j = i + 1; j < v.size(); ++j) {
@@ -193,12 +193,12 @@ NodeSpec triangle_row() {
           .check = [](Params p) { return check_sheet(corners(p)); },
           .code = code_of<Opcode::Triangle, sheet_immediates>,
           .bound = sheet_bound,
-          .magnitude = sheet_magnitude};
+          .cancellation = sheet_magnitude};
 }
 
-Complaint check_quad(Params p) {
+ErrorText check_quad(Params p) {
   const std::vector<dvec3> v = corners(p);
-  if (Complaint complaint = check_sheet(v)) return complaint;
+  if (ErrorText complaint = check_sheet(v)) return complaint;
   const dvec3 normal = glm::normalize(area_vector(v));
   const double scale = longest_side(v);
   const double out = std::abs(glm::dot(v[3] - v[0], glm::normalize(glm::cross(v[1] - v[0], v[2] - v[0]))));
@@ -226,7 +226,7 @@ NodeSpec quad_row() {
           .check = check_quad,
           .code = code_of<Opcode::Quad, sheet_immediates>,
           .bound = sheet_bound,
-          .magnitude = sheet_magnitude};
+          .cancellation = sheet_magnitude};
 }
 
 }  // namespace

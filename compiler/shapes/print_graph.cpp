@@ -62,7 +62,7 @@ std::string print_params(Kind kind, std::span<const double> params) {
 }
 
 // `place`: print the place in the source, too.
-std::string print_origin(const Origin& origin, const Source& source, bool place) {
+std::string print_origin(const SourceLocation& origin, const Source& source, bool place) {
   std::string out;
   if (!origin.name.empty()) out += fmt::format(" \"{}\"", origin.name);
   if (place && origin.span.end > 0) {
@@ -76,7 +76,7 @@ class PlaceNames {
  public:
   explicit PlaceNames(const Source& source) : source_(source) {}
 
-  std::string name(Kind kind, const Origin& origin) {
+  std::string name(Kind kind, const SourceLocation& origin) {
     std::string name(spec(kind).name);
     if (origin.span.end > 0) {
       const Position at = source_.locate(origin.span.begin);

@@ -22,8 +22,8 @@ using vm::Opcode;
 // plane through the middle of the nearest copy. Derived after them: the child's reach and box.
 
 constexpr double kAll = -1;
-constexpr double kMostCells = 8388608;  // 2^23: a float can still count the cells
-constexpr int kMostCopies = 512;
+constexpr double kMaxCells = 8388608;  // 2^23: a float can still count the cells
+constexpr int kMaxCopies = 512;
 
 struct RepeatedAxis {
   double period, count, jitter;
@@ -33,8 +33,8 @@ struct RepeatedAxis {
   bool repeated() const { return period > 0; }
   bool endless() const { return count == 0; }
   double half() const { return !endless() && std::fmod(count, 2) == 0 ? 0.5 : 0; }
-  double first() const { return endless() ? -kMostCells : -std::floor(count / 2); }
-  double last() const { return endless() ? kMostCells - 1 : first() + count - 1; }
+  double first() const { return endless() ? -kMaxCells : -std::floor(count / 2); }
+  double last() const { return endless() ? kMaxCells - 1 : first() + count - 1; }
   double position(double number) const { return (number + half()) * period; }
   // Number of copies evaluated at each point: a whole number, which exceeds any `int` if the period is next to
   // nothing.
@@ -62,8 +62,8 @@ Repeated repeated(Params p) {
   return r;
 }
 
-std::vector<double> derive_repetition(Params p, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
+std::vector<double> derive_repetition(Params p, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
   std::vector<double> sides(3, 0), apart(3, 0);
   const bool jitters = p[6] > 0 || p[7] > 0 || p[8] > 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -89,7 +89,7 @@ std::vector<double> derive_repetition(Params p, std::span<const Knowledge> child
   return derived;
 }
 
-Complaint check_repetition(Params p) {
+ErrorText check_repetition(Params p) {
   if (!(p[0] >= 0 && p[1] >= 0 && p[2] >= 0) || p[0] + p[1] + p[2] == 0) {
     return "`period` must hold the distance between copies along each axis, 0 where there is one only; give at least "
            "one above 0";
@@ -103,7 +103,7 @@ Complaint check_repetition(Params p) {
   return std::nullopt;
 }
 
-Complaint check_repetition_child(Params p, std::span<const Knowledge> children) {
+ErrorText check_repetition_child(Params p, std::span<const NodeFacts> children) {
   const Box& box = children[0].box;
   for (int i = 0; i < 3; ++i) {
     if (p[static_cast<std::size_t>(i)] == 0 || (std::isfinite(box.lo[i]) && std::isfinite(box.hi[i]))) continue;
@@ -112,16 +112,16 @@ Complaint check_repetition_child(Params p, std::span<const Knowledge> children) 
   }
   const Repeated r = repeated(spec(Kind::Repetition).with_derived(p, children));
   const double copies = r.axes[0].copies() * r.axes[1].copies() * r.axes[2].copies();
-  if (copies <= kMostCopies) return std::nullopt;
+  if (copies <= kMaxCopies) return std::nullopt;
   return fmt::format(
       "the node reaches across so many cells that {} copies count at every point; at most {} are "
       "evaluated: make `period` larger or the node smaller",
-      copies, kMostCopies);
+      copies, kMaxCopies);
 }
 
-Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
+NodeFacts know_repetition(Params p, std::span<const NodeFacts> children) {
   const Repeated r = repeated(p);
-  Knowledge k = mapped(children[0]);
+  NodeFacts k = mapped(children[0]);
   double moved = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const RepeatedAxis& a = r.axes[i];
@@ -135,7 +135,7 @@ Knowledge know_repetition(Params p, std::span<const Knowledge> children) {
     k.box.lo[axis] = a.endless() && a.repeated() ? -inf : k.box.lo[axis] + a.position(a.first()) - a.jitter;
     k.box.hi[axis] = a.endless() && a.repeated() ? inf : k.box.hi[axis] + a.position(a.last()) + a.jitter;
   }
-  k.magnitude += moved;
+  k.cancellation += moved;
   k.inside = std::max(k.inside, Exactness::Bound);
   if (!r.limited()) return k;
   k = only_bound(k);
@@ -239,8 +239,8 @@ Wedge wedge_of(const Box& box) {
   return {middle, half};
 }
 
-std::vector<double> derive_polar(Params p, std::span<const Knowledge> children) {
-  const Knowledge& child = children[0];
+std::vector<double> derive_polar(Params p, std::span<const NodeFacts> children) {
+  const NodeFacts& child = children[0];
   const Wedge wedge = wedge_of(child.box);
   const double sector = 2 * std::numbers::pi / p[0];
   double sides = std::ceil(wedge.half / sector + 0.25);
@@ -257,23 +257,23 @@ std::vector<double> derive_polar(Params p, std::span<const Knowledge> children) 
                              std::max({0.0, child.box.lo.z, -child.box.hi.z}))};
 }
 
-Complaint check_polar(Params p) {
+ErrorText check_polar(Params p) {
   if (p[0] <= 100000) return std::nullopt;
   return fmt::format("`count` is {}; at most 100000 copies are possible", p[0]);
 }
 
-Complaint check_polar_child(Params p, std::span<const Knowledge> children) {
-  if (Complaint complaint = check_bounded_about_y(children, "a polar repetition")) return complaint;
+ErrorText check_polar_child(Params p, std::span<const NodeFacts> children) {
+  if (ErrorText complaint = check_bounded_about_y(children, "a polar repetition")) return complaint;
   const double sides = derive_polar(p, children)[0], copies = sides == kAll ? p[0] : 2 * sides;
-  if (copies <= kMostCopies) return std::nullopt;
+  if (copies <= kMaxCopies) return std::nullopt;
   return fmt::format(
       "{} copies count at every point, for the node reaches across them; at most {} are evaluated: use "
       "fewer or move the node further from the axis",
-      copies, kMostCopies);
+      copies, kMaxCopies);
 }
 
-Knowledge know_polar(Params p, std::span<const Knowledge> children) {
-  Knowledge k = mapped(children[0]);
+NodeFacts know_polar(Params p, std::span<const NodeFacts> children) {
+  NodeFacts k = mapped(children[0]);
   const double radius = radius_about_y(k.box);
   k.box = tube(radius, k.box.lo.y, k.box.hi.y);
   k.symmetric[1] = children[0].symmetric[1];
@@ -281,7 +281,7 @@ Knowledge know_polar(Params p, std::span<const Knowledge> children) {
   k.reach_max = std::min(k.reach_max, k.reach);
   if (p[1] == kAll) return k;
   k.box = tube(p[7], children[0].box.lo.y - kAside * p[7], children[0].box.hi.y + kAside * p[7]);
-  k.magnitude += radius;      // the angle's sine and cosine are rounded
+  k.cancellation += radius;      // the angle's sine and cosine are rounded
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result
   k.lipschitz = std::max(1.0, k.lipschitz);
   return only_bound(k);
@@ -326,7 +326,7 @@ std::vector<NodeSpec> repetition_rows() {
        .doc = "a node again and again",
        .check = check_repetition,
        .code = repetition_code,
-       .know = know_repetition,
+       .derive_facts = know_repetition,
        .derive = derive_repetition,
        .check_children = check_repetition_child},
       {.kind = Kind::PolarRepetition,
@@ -337,7 +337,7 @@ std::vector<NodeSpec> repetition_rows() {
        .operand = Sort::Solid,
        .check = check_polar,
        .code = polar_code,
-       .know = know_polar,
+       .derive_facts = know_polar,
        .derive = derive_polar,
        .check_children = check_polar_child},
   };

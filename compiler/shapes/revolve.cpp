@@ -24,7 +24,7 @@ using glm::dvec3;
 
 constexpr double kRounding = 1e-12;  // of places after transforms, as a share of the largest coordinate
 // maximum nodes of an outline that are rebuilt; a shared node counts once per use
-constexpr int kMostNodes = 256;
+constexpr int kMaxNodes = 256;
 
 // Removes the edges of a polygon on the axis and beyond. At least one corner is at x > rounding.
 class PolygonTrimmer {
@@ -72,7 +72,7 @@ class PolygonTrimmer {
 
 // Returns the node under a transform with these parameters. Removes a transform at the top of the node if the two
 // transforms cancel.
-NodeId placed(NodeMaker& maker, NodeId node, Params params, const Origin& origin) {
+NodeId placed(NodeMaker& maker, NodeId node, Params params, const SourceLocation& origin) {
   const Graph& graph = maker.graph();
   if (graph.kind(node) == Kind::Transform && graph.params(node)[12] * params[12] == 1 &&
       compose(Affine::from_params(graph.params(node)), Affine::from_params(params)) == kIdentity) {
@@ -81,7 +81,7 @@ NodeId placed(NodeMaker& maker, NodeId node, Params params, const Origin& origin
   return maker.make(Kind::Transform, params, std::array{node}, origin);
 }
 
-NodeId moved(NodeMaker& maker, NodeId node, double x, double y, const Origin& origin) {
+NodeId moved(NodeMaker& maker, NodeId node, double x, double y, const SourceLocation& origin) {
   if (x == 0 && y == 0) return node;
   const double params[] = {1, 0, 0, -x, 0, 1, 0, -y, 0, 0, 1, 0, 1};
   return placed(maker, node, params, origin);
@@ -101,11 +101,11 @@ class OutlineTrimmer {
   // `place` maps the node's plane to the plane of the revolve, whose y axis is the axis of revolution.
   Trimmed trim(NodeId id, const Affine& place) {
     if (is_clear(id, place)) return {id, true};
-    if (++visited_ > kMostNodes) return {id, false};
+    if (++visited_ > kMaxNodes) return {id, false};
     switch (maker_.graph().kind(id)) {
       case Kind::Transform: {
         const Affine up = inverse(Affine::from_params(maker_.graph().params(id)));
-        const Stretch s = stretch(up);
+        const SingularValues s = singular_values(up);
         if (s.most - s.least > kRounding * s.most) return {id, false};
         return trim_children(id, compose(place, up));
       }
@@ -122,7 +122,7 @@ class OutlineTrimmer {
  private:
   // True if all of the node is at x > 0, or the axis is one of its mirror lines.
   bool is_clear(NodeId id, const Affine& place) {
-    const Knowledge& known = maker_.known(id);
+    const NodeFacts& known = maker_.known(id);
     const Box there = image(place, known.box);
     if (there.lo.x > kRounding * std::abs(place.translation.x)) return true;
     const dvec3 row = place.rows[0];
@@ -142,7 +142,7 @@ class OutlineTrimmer {
     }
     if (trimmed == children) return {id, exact};
     const std::vector<double> params(graph.params(id).begin(), graph.params(id).end());
-    const Origin origin = graph.origin(id);
+    const SourceLocation origin = graph.origin(id);
     if (graph.kind(id) == Kind::Transform) return {placed(maker_, trimmed[0], params, origin), exact};
     return {maker_.make(graph.kind(id), params, trimmed, origin), exact};
   }
@@ -151,15 +151,15 @@ class OutlineTrimmer {
     const auto corners_of = spec(maker_.graph().kind(id)).corners;
     if (corners_of == nullptr) return {id, false};
     std::vector<dvec2> corners = corners_of(maker_.graph().params(id));
-    double largest = std::abs(place.translation.x), least_x = largest, most_x = -largest;
+    double largest = std::abs(place.translation.x), min_x = largest, max_x = -largest;
     for (dvec2& q : corners) {
       q = dvec2(place(dvec3(q, 0)));
       largest = std::max({largest, std::abs(q.x), std::abs(q.y)});
-      least_x = std::min(least_x, q.x), most_x = std::max(most_x, q.x);
+      min_x = std::min(min_x, q.x), max_x = std::max(max_x, q.x);
     }
     const double rounding = kRounding * largest;
-    if (most_x <= rounding) return {id, false};
-    if (least_x > rounding) return {id, true};
+    if (max_x <= rounding) return {id, false};
+    if (min_x > rounding) return {id, true};
     if (maker_.graph().kind(id) == Kind::Rectangle && (place.rows[0].x == 0 || place.rows[0].y == 0)) {
       return {mirrored_rectangle(id, place), true};
     }
@@ -167,14 +167,14 @@ class OutlineTrimmer {
   }
 
   Trimmed polygon(NodeId id, const Affine& place, const std::vector<dvec2>& corners) {
-    if (corners.size() < 3 || corners.size() > kMostCorners) return {id, false};
+    if (corners.size() < 3 || corners.size() > kMaxCorners) return {id, false};
     const Affine back = inverse(place);
     std::vector<double> points;
     for (const dvec2 q : corners) {
       const dvec3 p = back(dvec3(q, 0));
       points.insert(points.end(), {p.x, p.y});
     }
-    return {maker_.make(Kind::Polygon, points, {}, Origin(maker_.graph().origin(id))), true};
+    return {maker_.make(Kind::Polygon, points, {}, SourceLocation(maker_.graph().origin(id))), true};
   }
 
   // Rebuilds a rectangle with sides along and across the axis: the part at x >= 0, and that part's mirror image.
@@ -183,7 +183,7 @@ class OutlineTrimmer {
     const double slope = place.rows[0][static_cast<int>(across)], axis = -place.translation.x / slope;
     std::vector<double> half(maker_.graph().params(id).begin(), maker_.graph().params(id).end());
     half[across] = std::abs((slope > 0 ? half[across] : -half[across]) - axis);
-    const Origin origin = maker_.graph().origin(id);
+    const SourceLocation origin = maker_.graph().origin(id);
     const NodeId rectangle = maker_.make(Kind::Rectangle, half, {}, origin);
     return across == 0 ? moved(maker_, rectangle, axis, 0, origin) : moved(maker_, rectangle, 0, axis, origin);
   }
@@ -194,7 +194,7 @@ class OutlineTrimmer {
 
 }  // namespace
 
-NodeId build_revolve(NodeMaker& maker, Params p, std::span<const NodeId> children, const Origin& origin) {
+NodeId build_revolve(NodeMaker& maker, Params p, std::span<const NodeId> children, const SourceLocation& origin) {
   const NodeId outline = children[0];
   const double offset = p[0];
   const Affine place{kIdentity.rows, dvec3(offset, 0, 0)};

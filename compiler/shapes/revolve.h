@@ -7,6 +7,6 @@
 namespace fathom::compiler {
 
 // Implements NodeSpec::build. The node's derived number is 1 if the node is as exact as its outline, else 0.
-NodeId build_revolve(NodeMaker& maker, Params params, std::span<const NodeId> children, const Origin& origin);
+NodeId build_revolve(NodeMaker& maker, Params params, std::span<const NodeId> children, const SourceLocation& origin);
 
 }  // namespace fathom::compiler

@@ -15,7 +15,7 @@ namespace {
 using glm::dvec2;
 using vm::Opcode;
 
-Complaint check_uneven_capsule(Params p) {
+ErrorText check_uneven_capsule(Params p) {
   if (std::abs(p[0] - p[1]) <= p[2]) return std::nullopt;
   return fmt::format("the radii differ by {}, more than `height` {}: one disk holds the other; use `circle`",
                      std::abs(p[0] - p[1]), p[2]);
@@ -42,11 +42,11 @@ NodeSpec uneven_capsule_row() {
 ParamSpec angle(std::string_view doc, std::optional<double> fallback = kRequired) {
   return {"angle", ParamType::Number, Rule::Positive, fallback, doc};
 }
-Complaint check_angle(double angle, bool closed, const char* other) {
+ErrorText check_angle(double angle, bool closed, const char* other) {
   if (angle > 0 && (angle < 180 || (closed && angle == 180))) return std::nullopt;
   return fmt::format("`angle` is {}; it must be above 0 and {} 180{}", angle, closed ? "at most" : "below", other);
 }
-Complaint check_thickness(double thickness, double radius, const char* other) {
+ErrorText check_thickness(double thickness, double radius, const char* other) {
   if (thickness < radius) return std::nullopt;
   return fmt::format("`thickness` {} is not smaller than `radius` {}, which leaves no hole; use `{}`", thickness,
                      radius, other);
@@ -58,8 +58,8 @@ Box arc_box(double radius, double angle) {
   return mirrored_hull({{0, radius}, {angle >= 90 ? radius : end.x, radius}, end});
 }
 
-Complaint check_arc(Params p) {
-  if (Complaint complaint = check_angle(p[1], true, ", a full circle")) return complaint;
+ErrorText check_arc(Params p) {
+  if (ErrorText complaint = check_angle(p[1], true, ", a full circle")) return complaint;
   return check_thickness(p[2], p[0], p[1] == 180 ? "circle" : "pie");
 }
 Code arc_code(Params p) {
@@ -81,7 +81,7 @@ NodeSpec arc_row() {
           .code = arc_code,
           .bound = arc_bound,
           .facts = {Exactness::Exact, Exactness::Bound, kXAndZ},
-          .magnitude = outline_magnitude<arc_bound>};
+          .cancellation = outline_magnitude<arc_bound>};
 }
 
 // A whole ring has no ends.
@@ -105,7 +105,7 @@ NodeSpec ring_row() {
       .code = ring_code,
       .bound = ring_bound,
       .facts = kUpright,
-      .magnitude = outline_magnitude<ring_bound>};
+      .cancellation = outline_magnitude<ring_bound>};
 }
 
 // A whole disk has no sides.
@@ -128,7 +128,7 @@ NodeSpec pie_row() {
 }
 
 double half_chord(Params p) { return std::sqrt((p[0] - p[1]) * (p[0] + p[1])); }
-Complaint check_cut_disk(Params p) {
+ErrorText check_cut_disk(Params p) {
   if (std::abs(p[1]) < p[0]) return std::nullopt;
   return fmt::format("`height` {} is not within the disk of `radius` {}: {}", p[1], p[0],
                      p[1] > 0 ? "nothing is cut off; use `circle`" : "nothing is left");
@@ -149,9 +149,9 @@ NodeSpec cut_disk_row() {
       .facts = kUpright};
 }
 
-Complaint check_horseshoe(Params p) {
-  if (Complaint complaint = check_angle(p[1], false, "")) return complaint;
-  if (Complaint complaint = check_thickness(p[3], p[0], "pie")) return complaint;
+ErrorText check_horseshoe(Params p) {
+  if (ErrorText complaint = check_angle(p[1], false, "")) return complaint;
+  if (ErrorText complaint = check_thickness(p[3], p[0], "pie")) return complaint;
   const vm::real::SinCos at = vm::real::sin_cos_degrees(p[1]);
   const double inner = p[0] - p[3], clear = inner * at.sin + std::min(0.0, p[2] * at.cos);
   if (clear >= 0) return std::nullopt;
@@ -181,10 +181,10 @@ NodeSpec horseshoe_row() {
       .code = horseshoe_code,
       .bound = horseshoe_bound,
       .facts = kUpright,
-      .magnitude = outline_magnitude<horseshoe_bound>};
+      .cancellation = outline_magnitude<horseshoe_bound>};
 }
 
-Complaint check_lens(Params p) {
+ErrorText check_lens(Params p) {
   if (p[1] < p[0]) return std::nullopt;
   return fmt::format(
       "`half_width` {} is not smaller than `half_height` {}; exchange them and turn it with rotate, or make it round",
@@ -209,7 +209,7 @@ NodeSpec lens_row() {
           .facts = kSymmetric};
 }
 
-Complaint check_moon(Params p) {
+ErrorText check_moon(Params p) {
   const double radius = p[0], cut = p[1], distance = p[2];
   const char* others = "`radius`, `cut_radius` and `distance` do not fit together: ";
   if (distance >= radius + cut) return fmt::format("{}the cut is outside the disk; use `circle`", others);
@@ -249,10 +249,10 @@ NodeSpec moon_row() {
           .code = moon_code,
           .bound = moon_bound,
           .facts = kUpright,
-          .magnitude = moon_magnitude};
+          .cancellation = moon_magnitude};
 }
 
-Complaint check_egg(Params p) {
+ErrorText check_egg(Params p) {
   if (!(p[1] < p[0])) {
     return fmt::format("`top_radius` {} is not smaller than `bottom_radius` {}; use `uneven_capsule`", p[1], p[0]);
   }
@@ -301,7 +301,7 @@ NodeSpec heart_row() {
           .facts = kUpright};
 }
 
-Complaint check_cross(Params p) {
+ErrorText check_cross(Params p) {
   if (p[1] < p[0]) return std::nullopt;
   return fmt::format("`half_width` {} is not smaller than `half_length` {}; use `rectangle`", p[1], p[0]);
 }
@@ -326,7 +326,7 @@ NodeSpec cross_row() {
 
 // The inner corners between the arms exist while the arms' ends lie beyond them: radius <= sqrt 2 (half size -
 // radius).
-Complaint check_rounded_x(Params p) {
+ErrorText check_rounded_x(Params p) {
   const double most = p[0] * std::numbers::sqrt2 / (1 + std::numbers::sqrt2);
   if (p[1] <= most) return std::nullopt;
   return fmt::format(

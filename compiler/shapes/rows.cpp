@@ -50,20 +50,20 @@ double largest_coordinate(const Box& box) {
   return largest;
 }
 
-Knowledge only_bound(Knowledge k) {
+NodeFacts only_bound(NodeFacts k) {
   k.outside = std::max(k.outside, Exactness::Bound);
   k.inside = std::max(k.inside, Exactness::Bound);
   return k;
 }
 
-Knowledge mapped(Knowledge k) {
+NodeFacts mapped(NodeFacts k) {
   k.symmetric = {false, false, false};
   return k;
 }
 
-Knowledge offset(Knowledge k, double by) {
+NodeFacts offset(NodeFacts k, double by) {
   if (by <= 0) return k;
-  k.magnitude += by;
+  k.cancellation += by;
   if (!(k.reach_max > 0)) {
     k.box = Box::everything();
     return k;
@@ -73,16 +73,16 @@ Knowledge offset(Knowledge k, double by) {
   return k;
 }
 
-Knowledge together(std::span<const Knowledge> children) {
-  Knowledge k = children[0];
-  for (const Knowledge& c : children) {
+NodeFacts together(std::span<const NodeFacts> children) {
+  NodeFacts k = children[0];
+  for (const NodeFacts& c : children) {
     k.lipschitz = std::max(k.lipschitz, c.lipschitz);
     k.certified = k.certified && c.certified;
     k.reach = std::min(k.reach, c.reach);
     k.reach_max = std::min(k.reach_max, c.reach_max);
     k.outside = std::max(k.outside, c.outside);
     k.inside = std::max(k.inside, c.inside);
-    k.magnitude = std::max(k.magnitude, c.magnitude);
+    k.cancellation = std::max(k.cancellation, c.cancellation);
     for (std::size_t axis = 0; axis < 3; ++axis) k.symmetric[axis] = k.symmetric[axis] && c.symmetric[axis];
   }
   return k;

@@ -55,9 +55,9 @@ std::vector<double> slanted_profile(double bottom, double top, double half_heigh
 // parameters, then the side's outward normal.
 std::vector<double> round_profile(Params params);
 
-// Returns the largest magnitude of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
+// Returns the largest cancellation of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
 double largest_coordinate(const Box& box);
-// Returns the magnitude of an outline whose parts are evaluated from points as far away as its box reaches in the
+// Returns the cancellation of an outline whose parts are evaluated from points as far away as its box reaches in the
 // plane.
 template <Box (*Bound)(Params)>
 double outline_magnitude(Params params) {
@@ -71,12 +71,12 @@ inline constexpr PrimitiveFacts kSymmetric{.symmetric = kAllAxes}, kUpright{.sym
 
 // Combines the facts of several children by taking the worst of each: Lipschitz constants, certificates, reach and
 // symmetry. The caller sets the box and the exactness inside.
-Knowledge together(std::span<const Knowledge> children);
+NodeFacts together(std::span<const NodeFacts> children);
 // Returns the facts of the surface moved out by `by`.
-Knowledge offset(Knowledge k, double by);
+NodeFacts offset(NodeFacts k, double by);
 // Returns the facts without exactness: at best a bound.
-Knowledge only_bound(Knowledge k);
+NodeFacts only_bound(NodeFacts k);
 // Returns the facts of a node that maps its child's point, for which no symmetry is known.
-Knowledge mapped(Knowledge k);
+NodeFacts mapped(NodeFacts k);
 
 }  // namespace fathom::compiler

@@ -39,7 +39,7 @@ NodeSpec box_row() {
           .facts = kSymmetric};
 }
 
-Complaint check_round_box(Params p) {
+ErrorText check_round_box(Params p) {
   const double smallest = std::min({p[0], p[1], p[2]});
   if (p[3] <= smallest) return std::nullopt;
   return fmt::format("`radius` {} is larger than the smallest half size {}; the rounding is part of the half size",
@@ -58,7 +58,7 @@ NodeSpec round_box_row() {
           .facts = kSymmetric};
 }
 
-Complaint check_box_frame(Params p) {
+ErrorText check_box_frame(Params p) {
   const double smallest = std::min({p[0], p[1], p[2]});
   if (2 * p[3] <= smallest) return std::nullopt;
   return fmt::format(
@@ -96,10 +96,10 @@ NodeSpec torus_row() {
           .code = code_of<Opcode::Torus>,
           .bound = torus_bound,
           .facts = {Exactness::Exact, Exactness::Bound, kAllAxes},
-          .magnitude = torus_magnitude};
+          .cancellation = torus_magnitude};
 }
 
-Complaint check_capped_torus(Params p) {
+ErrorText check_capped_torus(Params p) {
   if (p[2] <= 180) return std::nullopt;
   return fmt::format("`angle` is {}; it is half of what remains of the ring, at most 180 degrees", p[2]);
 }
@@ -124,7 +124,7 @@ NodeSpec capped_torus_row() {
           .code = capped_torus_code,
           .bound = capped_torus_bound,
           .facts = {Exactness::Exact, Exactness::Bound, kXAndZ},
-          .magnitude = torus_magnitude};
+          .cancellation = torus_magnitude};
 }
 
 Code plane_code(Params p) {
@@ -166,7 +166,7 @@ NodeSpec cylinder_row() {
           .between = Between{"half_height", 0.5}};
 }
 
-Complaint check_rounded_cylinder(Params p) {
+ErrorText check_rounded_cylinder(Params p) {
   const double smallest = std::min(p[0], p[1]);
   if (p[2] <= smallest) return std::nullopt;
   return fmt::format("`rounding` {} is larger than {}, the smaller of `radius` and `half_height`; it is part of both",
@@ -214,7 +214,7 @@ NodeSpec capsule_row() {
       .between = Between{"half_height", 0.5}};
 }
 
-Complaint check_cone(Params p) {
+ErrorText check_cone(Params p) {
   if (p[0] > 0 || p[1] > 0) return std::nullopt;
   return "both radii are 0; one of `bottom_radius` and `top_radius` must be positive";
 }
@@ -236,7 +236,7 @@ NodeSpec cone_row() {
           .between = Between{"half_height", 0.5}};
 }
 
-Complaint check_round_cone(Params p) {
+ErrorText check_round_cone(Params p) {
   if (std::abs(p[0] - p[1]) <= p[2]) return std::nullopt;
   return fmt::format("the radii differ by {}, more than `height` {}: one ball holds the other; use a sphere",
                      std::abs(p[0] - p[1]), p[2]);
@@ -260,7 +260,7 @@ NodeSpec round_cone_row() {
       .between = Between{"height", 1}};
 }
 
-Complaint check_infinite_cone(Params p) {
+ErrorText check_infinite_cone(Params p) {
   if (p[0] < 90) return std::nullopt;
   return fmt::format("`angle` is {}; it is measured from the axis to the side and must be below 90 degrees", p[0]);
 }

@@ -13,20 +13,20 @@ namespace fathom::compiler {
 namespace {
 
 // maximum of printed errors, and of printed warnings: a person reads as many in one go
-constexpr std::size_t kMostPrinted = 20;
+constexpr std::size_t kMaxPrinted = 20;
 constexpr std::size_t kWidestQuote = 140;  // columns of a quoted line, which is cut around the carets if longer
 constexpr std::size_t kLead = 50;          // columns kept before the carets of a cut line
 constexpr std::size_t kTabWidth = 4;
 
 // Maximum bytes of a message, a label or a line of help: names and numbers can be as long as the file.
-constexpr std::size_t kMostBytes = 2000;
+constexpr std::size_t kMaxBytes = 2000;
 constexpr std::size_t kWindow = 4096;  // bytes of a line that are considered on either side of the carets
 
-// Returns the text made printable on a terminal and cut to kMostBytes at the boundary of a character.
+// Returns the text made printable on a terminal and cut to kMaxBytes at the boundary of a character.
 std::string shown(std::string_view from) {
   std::string text = vm::printable(from);
-  if (text.size() <= kMostBytes) return text;
-  std::size_t end = kMostBytes;
+  if (text.size() <= kMaxBytes) return text;
+  std::size_t end = kMaxBytes;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   text.resize(end);
   return text + "...";
@@ -198,12 +198,12 @@ bool Diagnostics::count_known(const std::string& code, Span span) {
 
 // Describes the calls and loops that led to the diagnostic, the innermost first.
 std::vector<std::string> Diagnostics::calls(const Diagnostic& d, const Source& source) const {
-  constexpr std::size_t kMostCalls = 8;
+  constexpr std::size_t kMaxCalls = 8;
   std::vector<std::string> lines;
   // A span can carry the trace number of another Diagnostics object.
   for (std::uint32_t number = d.span.trace; number > 0 && number <= traces_.size();
        number = traces_[number - 1].outside) {
-    if (lines.size() == kMostCalls) {
+    if (lines.size() == kMaxCalls) {
       lines.emplace_back("and more calls around these");
       break;
     }
@@ -225,13 +225,13 @@ void Diagnostics::error(std::string code, Span span, std::string message, std::s
     ++repeated_;
     return;
   }
-  if (errors_ - repeated_ > kMostKept) return;
+  if (errors_ - repeated_ > kMaxKept) return;
   add({Severity::Error, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
 void Diagnostics::warning(std::string code, Span span, std::string message, std::string label,
                           std::vector<std::string> help) {
-  if (count_known(code, span) || ++warnings_ > kMostKept) return;
+  if (count_known(code, span) || ++warnings_ > kMaxKept) return;
   add({Severity::Warning, std::move(code), std::move(message), span, std::move(label), std::move(help)});
 }
 
@@ -251,7 +251,7 @@ std::string Diagnostics::print(const Source& source, ErrorFormat format, bool co
   std::size_t printed_errors = 0, printed_warnings = 0;
   for (const Diagnostic* d : sorted) {
     std::size_t& printed = d->severity == Severity::Error ? printed_errors : printed_warnings;
-    if (printed == kMostPrinted) continue;
+    if (printed == kMaxPrinted) continue;
     ++printed;
     if (format == ErrorFormat::Text && !out.empty()) out += "\n";
     if (format == ErrorFormat::Text) out += print_text(*d, calls(*d, source), source, style(color));

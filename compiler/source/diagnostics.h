@@ -72,8 +72,8 @@ class Diagnostics {
   std::size_t errors() const { return errors_; }
   std::size_t warnings() const { return warnings_; }
   // True if the file has so many errors that looking for more is useless: a file can have millions.
-  bool full() const { return errors_ >= kMostKept; }
-  // The first kMostKept errors and the first kMostKept warnings.
+  bool full() const { return errors_ >= kMaxKept; }
+  // The first kMaxKept errors and the first kMaxKept warnings.
   const std::vector<Diagnostic>& all() const { return all_; }
 
   // Prints the diagnostics in source order: the first 20 errors, the first 20 warnings, and the number of further
@@ -85,7 +85,7 @@ class Diagnostics {
   bool count_known(const std::string& code, Span span);
   std::vector<std::string> calls(const Diagnostic& d, const Source& source) const;
 
-  static constexpr std::size_t kMostKept = 100;
+  static constexpr std::size_t kMaxKept = 100;
 
   std::vector<Diagnostic> all_;
   std::vector<Trace> traces_;

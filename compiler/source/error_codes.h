@@ -116,7 +116,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0513", "a scene too small for numbers"},
     {"W0514", "a field that is not a number somewhere"},
     {"W0515", "no light reaches the camera"},
-    {"W0516", "nothing is in view"},  // runtime/cli/picture/picture_warning.cpp
+    {"W0516", "nothing is in view"},  // runtime/cli/picture/image_warning.cpp
     {"W0517", "a shutter in a scene without time"},
 };
 

@@ -19,7 +19,7 @@ std::string lower(std::string_view text) {
 
 // Bounds on the time that a file full of mistakes takes.
 constexpr std::size_t kLongestWord = 40;  // letters; longer words get no suggestion
-constexpr std::size_t kMostCandidates = 4000;
+constexpr std::size_t kMaxCandidates = 4000;
 
 // Returns the number of insertions, deletions, replacements and swaps of neighbours that turn `a` into `b`: the
 // optimal string alignment distance (Damerau, "A technique for computer detection and correction of spelling errors",
@@ -54,7 +54,7 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
   std::string_view best;
   std::size_t fewest = most + 1;
   const std::string lowered = lower(word);
-  for (const std::string_view candidate : std::span(candidates).first(std::min(candidates.size(), kMostCandidates))) {
+  for (const std::string_view candidate : std::span(candidates).first(std::min(candidates.size(), kMaxCandidates))) {
     const std::size_t longer = std::max(candidate.size(), word.size());
     if (longer - std::min(candidate.size(), word.size()) > most) continue;
     const std::size_t distance = edits(lowered, lower(candidate), most);

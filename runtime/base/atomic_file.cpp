@@ -67,7 +67,7 @@ int create_locked(const std::string& name) {
 }
 
 // True if the name is one of find_name().
-bool is_beside(std::string_view name) {
+bool is_temporary(std::string_view name) {
   if (!name.starts_with(kBeside)) return false;
   name.remove_prefix(kBeside.size());
   const std::size_t dash = name.find('-');
@@ -89,7 +89,7 @@ bool is_name_of(const char* name, int file) {
 void remove_left_behind(const std::string& folder) {
   std::error_code error;
   for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (!is_beside(at->path().filename().string())) continue;
+    if (!is_temporary(at->path().filename().string())) continue;
     const int file = ::open(at->path().c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     if (file < 0) continue;
     const char* name = at->path().c_str();
@@ -118,7 +118,7 @@ void sync_folder(const std::string& folder) {
 AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   const auto target = target_of(path_);
   if (!target) {
-    give_up(kNowhere);
+    fail(kNowhere);
     return;
   }
   target_ = *target;
@@ -126,15 +126,15 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   const bool replaces = ::stat(target_.c_str(), &existing) == 0;
   // Renaming over a device or a folder would destroy it.
   if (replaces && !S_ISREG(existing.st_mode)) {
-    give_up(kIrregular);
-  } else if (open_beside()) {
+    fail(kIrregular);
+  } else if (open_temporary()) {
     (void)!::fchmod(file_, replaces ? existing.st_mode & 0777 : usual_access());
   } else {
-    give_up(reason());
+    fail(reason());
   }
 }
 
-bool AtomicFile::open_beside() {
+bool AtomicFile::open_temporary() {
   const std::string folder = folder_of(target_);
 #ifdef O_TMPFILE
   if (::access(kOpenFiles, X_OK) == 0) file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
@@ -143,27 +143,27 @@ bool AtomicFile::open_beside() {
     return true;
   }
 #endif
-  beside_ = find_name(folder, [&](const std::string& name) { return (file_ = create_locked(name)) >= 0; });
+  temporary_ = find_name(folder, [&](const std::string& name) { return (file_ = create_locked(name)) >= 0; });
   return file_ >= 0;
 }
 
 // Gives the file a name, which renaming needs.
-bool AtomicFile::name_beside() {
-  if (!beside_.empty()) return true;
+bool AtomicFile::link_temporary() {
+  if (!temporary_.empty()) return true;
   const std::string file = fmt::format("{}/{}", kOpenFiles, file_);
-  beside_ = find_name(folder_of(target_), [&](const std::string& name) {
+  temporary_ = find_name(folder_of(target_), [&](const std::string& name) {
     return ::linkat(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
   });
-  return !beside_.empty() || copy_beside();
+  return !temporary_.empty() || copy_temporary();
 }
 
 // Copies the file to one with a name, where the system can make a file without a name but not name it later: some
 // network and layered file systems.
-bool AtomicFile::copy_beside() {
+bool AtomicFile::copy_temporary() {
   const int from = file_;
   struct stat status {};
   int to = -1;
-  beside_ = find_name(folder_of(target_), [&](const std::string& name) { return (to = create_locked(name)) >= 0; });
+  temporary_ = find_name(folder_of(target_), [&](const std::string& name) { return (to = create_locked(name)) >= 0; });
   if (to < 0) return false;
   file_ = to;
   bool good =
@@ -183,10 +183,10 @@ bool AtomicFile::copy_beside() {
 AtomicFile::~AtomicFile() {
   if (file_ < 0) return;
   ::close(file_);
-  if (!beside_.empty()) ::unlink(beside_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-bool AtomicFile::give_up(std::string_view why) {
+bool AtomicFile::fail(std::string_view why) {
   if (!problem_) problem_ = fmt::format("cannot write `{}`: {}", path_, why);
   return false;
 }
@@ -202,7 +202,7 @@ bool AtomicFile::write(std::span<const std::uint8_t> bytes) {
   while (!problem_ && !bytes.empty()) {
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return give_up(reason());
+    if (count <= 0) return fail(reason());
     position_ += static_cast<std::uint64_t>(count);
     bytes = bytes.subspan(static_cast<std::size_t>(count));
   }
@@ -211,21 +211,21 @@ bool AtomicFile::write(std::span<const std::uint8_t> bytes) {
 
 bool AtomicFile::seek(std::uint64_t position) {
   if (problem_) return false;
-  if (memory_ == nullptr && ::lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) return give_up(reason());
+  if (memory_ == nullptr && ::lseek(file_, static_cast<off_t>(position), SEEK_SET) < 0) return fail(reason());
   position_ = position;
   return true;
 }
 
 std::optional<std::string> AtomicFile::commit(const std::function<bool()>& may_replace) {
   if (problem_ || memory_ != nullptr) return problem_;
-  if (::fsync(file_) != 0 || !name_beside()) {
-    give_up(reason());
+  if (::fsync(file_) != 0 || !link_temporary()) {
+    fail(reason());
   } else if (may_replace && !may_replace()) {
-    give_up("another file has been put there");
-  } else if (::rename(beside_.c_str(), target_.c_str()) != 0) {
-    give_up(reason());
+    fail("another file has been put there");
+  } else if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    fail(reason());
   }
-  if (problem_ && !beside_.empty()) ::unlink(beside_.c_str());
+  if (problem_ && !temporary_.empty()) ::unlink(temporary_.c_str());
   struct stat status {};
   if (::fstat(file_, &status) == 0) stamp_ = to_stamp(status);
   ::close(std::exchange(file_, -1));  // not before: the lock shows that the name is in use

@@ -55,14 +55,14 @@ class AtomicFile {
   const std::optional<FileStamp>& stamp() const { return stamp_; }
 
  private:
-  bool give_up(std::string_view why);  // returns false
-  bool open_beside();
-  bool name_beside();
-  bool copy_beside();
+  bool fail(std::string_view why);  // returns false
+  bool open_temporary();
+  bool link_temporary();
+  bool copy_temporary();
 
   std::string path_;    // for messages
   std::string target_;  // path_ with links followed
-  std::string beside_;  // name of the temporary file; empty while it has none
+  std::string temporary_;  // name of the temporary file; empty while it has none
   int file_ = -1;
   std::vector<std::uint8_t>* memory_ = nullptr;  // instead of a file
   std::uint64_t position_ = 0;

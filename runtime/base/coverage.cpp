@@ -95,7 +95,7 @@ Blocks run_of(Blocks blocks, int PixelRect::*side) {
 
 // True if the row's columns are in order and disjoint, touching columns differ, and the ranges of each column are in
 // order and apart.
-bool is_tidy_row(Blocks row) {
+bool is_canonical_row(Blocks row) {
   Blocks before;
   while (!row.empty()) {
     const Blocks column = run_of(row, &PixelRect::x0);
@@ -115,7 +115,7 @@ bool is_tidy_row(Blocks row) {
   return true;
 }
 
-// True if the piece intersects neither the tidy block `at` nor any later block.
+// True if the piece intersects neither the canonical block `at` nor any later block.
 bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
   const PixelRect &a = piece.area, &b = at.area;
   if (a.y1 <= b.y0) return true;
@@ -123,10 +123,10 @@ bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
   return a.x1 <= b.x0 || (a.x0 >= b.x0 && a.x1 <= b.x1 && piece.samples.last <= at.samples.first);
 }
 
-// Calls use() with each of the tidy blocks that intersects `block`, in order, while use() returns true. Bisection
+// Calls use() with each of the canonical blocks that intersects `block`, in order, while use() returns true. Bisection
 // skips the blocks before: rows by y1, columns by x1, ranges by their ends.
 template <class Use>
-void each_common(Blocks tidy, const SampleBlock& block, const Use& use) {
+void each_intersection(Blocks canonicalise, const SampleBlock& block, const Use& use) {
   const auto skip = [](Blocks from, const auto& before) {
     return from.subspan(
         static_cast<std::size_t>(std::partition_point(from.begin(), from.end(), before) - from.begin()));
@@ -136,7 +136,7 @@ void each_common(Blocks tidy, const SampleBlock& block, const Use& use) {
     from = rest;
     return front;
   };
-  Blocks rows = skip(tidy, [&](const SampleBlock& b) { return b.area.y1 <= block.area.y0; });
+  Blocks rows = skip(canonicalise, [&](const SampleBlock& b) { return b.area.y1 <= block.area.y0; });
   while (!rows.empty() && rows[0].area.y0 < block.area.y1) {
     Blocks row = split(rows, [y0 = rows[0].area.y0](const SampleBlock& b) { return b.area.y0 == y0; });
     row = skip(row, [&](const SampleBlock& b) { return b.area.x1 <= block.area.x0; });
@@ -152,7 +152,7 @@ void each_common(Blocks tidy, const SampleBlock& block, const Use& use) {
 
 }  // namespace
 
-std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b) {
+std::optional<SampleBlock> intersection(const SampleBlock& a, const SampleBlock& b) {
   const SampleBlock both{{std::max(a.area.x0, b.area.x0), std::max(a.area.y0, b.area.y0),
                           std::min(a.area.x1, b.area.x1), std::min(a.area.y1, b.area.y1)},
                          {std::max(a.samples.first, b.samples.first), std::min(a.samples.last, b.samples.last)}};
@@ -165,7 +165,7 @@ void Coverage::add(const Coverage& other) {
   blocks_.insert(blocks_.end(), other.blocks_.begin(), other.blocks_.end());
 }
 
-void Coverage::tidy() {
+void Coverage::canonicalise() {
   struct Row {
     int y0, y1;
     std::vector<PixelColumn> columns;
@@ -190,11 +190,11 @@ void Coverage::tidy() {
   }
 }
 
-bool Coverage::is_tidy() const {
+bool Coverage::is_canonical() const {
   Blocks rest = blocks_, before;
   while (!rest.empty()) {
     const Blocks row = run_of(rest, &PixelRect::y0);
-    if (!is_tidy_row(row)) return false;
+    if (!is_canonical_row(row)) return false;
     const auto same = [](const SampleBlock& a, const SampleBlock& b) {
       return a.area.x0 == b.area.x0 && a.area.x1 == b.area.x1 && a.samples == b.samples;
     };
@@ -220,12 +220,12 @@ std::vector<SampleRange> Coverage::ranges() const {
 
 std::vector<SampleBlock> Coverage::missing(const SampleBlock& block) const {
   std::vector<SampleBlock> rest = {block}, pieces, settled;
-  each_common(blocks_, block, [&](const SampleBlock& at) {
+  each_intersection(blocks_, block, [&](const SampleBlock& at) {
     pieces.clear();
     for (const SampleBlock& piece : rest) {
       if (is_behind(piece, at)) {
         settled.push_back(piece);
-      } else if (const auto hole = common(piece, at)) {
+      } else if (const auto hole = intersection(piece, at)) {
         cut(piece, *hole, pieces);
       } else {
         pieces.push_back(piece);
@@ -241,8 +241,8 @@ std::vector<SampleBlock> Coverage::missing(const SampleBlock& block) const {
 std::optional<SampleBlock> Coverage::overlap(const Coverage& other) const {
   std::optional<SampleBlock> both;
   for (const SampleBlock& block : other.blocks_) {
-    each_common(blocks_, block, [&](const SampleBlock& at) {
-      both = common(at, block);
+    each_intersection(blocks_, block, [&](const SampleBlock& at) {
+      both = intersection(at, block);
       return false;
     });
     if (both) break;

@@ -1,14 +1,14 @@
 // Coverage: which samples of which pixels a film has, as blocks of pixels times samples.
 //
 // A block is a rectangle of pixels and a range of their samples. A unit of work takes a block, a sample range or a
-// crop asks for a block, and no block may be in two films that are merged. tidy() brings blocks into a canonical
+// crop asks for a block, and no block may be in two films that are merged. canonicalise() brings blocks into a canonical
 // form, which depends only on the samples they cover: rows of the image as high as they are alike, cut into columns
 // as wide as they are alike, each with its ranges. Films with the same samples therefore have the same bytes, however
 // they were made.
 //
 //     Coverage covered;
 //     covered.add({{0, 0, 16, 16}, {0, 8}});
-//     covered.tidy();
+//     covered.canonicalise();
 //     for (const SampleBlock& rest : covered.missing({{0, 0, 32, 16}, {0, 8}})) ...   // x from 16 on
 //
 // Tested by: tests/runtime/base/coverage_test.cpp
@@ -39,15 +39,15 @@ struct SampleBlock {
 };
 
 // Returns the intersection of two blocks; nothing when they are disjoint.
-std::optional<SampleBlock> common(const SampleBlock& a, const SampleBlock& b);
+std::optional<SampleBlock> intersection(const SampleBlock& a, const SampleBlock& b);
 
 class Coverage {
  public:
-  // Every query needs a tidy() after the last add().
+  // Every query needs a canonicalise() after the last add().
   void add(const SampleBlock& block) { blocks_.push_back(block); }
   void add(const Coverage& other);
-  void tidy();
-  bool is_tidy() const;  // looks once at each block; any blocks are allowed
+  void canonicalise();
+  bool is_canonical() const;  // looks once at each block; any blocks are allowed
 
   const std::vector<SampleBlock>& blocks() const { return blocks_; }
   bool empty() const { return blocks_.empty(); }
@@ -63,7 +63,7 @@ class Coverage {
   bool operator==(const Coverage&) const = default;
 
  private:
-  std::vector<SampleBlock> blocks_;  // ordered by y0, then x0, then samples, once they are tidy
+  std::vector<SampleBlock> blocks_;  // ordered by y0, then x0, then samples, once they are canonical
 };
 
 }  // namespace fathom::runtime

@@ -10,7 +10,7 @@ FileWatch::FileWatch(const std::vector<std::string>& paths) {
 }
 
 void FileWatch::add(const std::string& path) {
-  if (std::ranges::find(files_, path, &Watched::path) == files_.end())
+  if (std::ranges::find(files_, path, &WatchedFile::path) == files_.end())
     files_.push_back({path, stamp_of(path), false});
 }
 
@@ -21,13 +21,13 @@ std::optional<FileWatch::Stamp> FileWatch::stamp_of(const std::string& path) {
   return stamp;
 }
 
-FileWatch::Look FileWatch::look() {
-  Look result;
-  for (Watched& file : files_) {
+FileWatch::PollResult FileWatch::poll() {
+  PollResult result;
+  for (WatchedFile& file : files_) {
     const std::optional<Stamp> now = stamp_of(file.path);
-    result.away |= !now && file.is_needed;
-    if ((!now && file.is_needed) || now == file.seen) continue;
-    file.seen = now;
+    result.missing |= !now && file.is_needed;
+    if ((!now && file.is_needed) || now == file.last_stamp) continue;
+    file.last_stamp = now;
     result.other = true;
   }
   changed_ |= result.other;
@@ -35,13 +35,13 @@ FileWatch::Look FileWatch::look() {
 }
 
 bool FileWatch::changed() {
-  look();
+  poll();
   return changed_;
 }
 
 bool FileWatch::settled() {
-  const Look now = look();
-  if (!changed_ || now.other || now.away) return false;
+  const PollResult now = poll();
+  if (!changed_ || now.other || now.missing) return false;
   changed_ = false;
   return true;
 }

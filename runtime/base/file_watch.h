@@ -1,6 +1,6 @@
 // Detects changes of files by their time of modification and size, which every system and file system can tell. A
 // program may save a file in steps, and the first step often empties the file. A change therefore counts once nothing
-// more has happened from one look to the next.
+// more has happened from one poll to the next.
 // Tested by: tests/runtime/base/file_watch_test.cpp, tests/runtime/cli/cli_watch_test.cpp
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace fathom::runtime {
 
-// Time between looks, for callers that wait.
+// Time between polls, for callers that wait.
 inline constexpr std::chrono::milliseconds kWatchInterval{200};
 
 class FileWatch {
@@ -23,11 +23,11 @@ class FileWatch {
   // Watches one more file, which may be missing for good. Does nothing when the file is watched already.
   void add(const std::string& path);
 
-  // Looks at the files. True if some file has changed, if only for a while, since a change settled last (the first
+  // Polls the files. True if some file has changed, if only for a while, since a change settled last (the first
   // time, since the beginning). A missing file, as while an editor saves, has not changed until it is back.
   bool changed();
-  // Looks at the files. True if there is such a change, no needed file is missing, and no file has changed since the
-  // look before. The next change then counts from the files as they are now.
+  // Polls the files. True if there is such a change, no needed file is missing, and no file has changed since the
+  // poll before. The next change then counts from the files as they are now.
   bool settled();
 
  private:
@@ -36,19 +36,19 @@ class FileWatch {
     std::uintmax_t size;
     bool operator==(const Stamp&) const = default;
   };
-  struct Watched {
+  struct WatchedFile {
     std::string path;
-    std::optional<Stamp> seen;
+    std::optional<Stamp> last_stamp;
     bool is_needed;  // nothing settles while it is missing
   };
-  // Result of a look: `other` when some file has changed since the look before, `away` when a needed file is missing.
-  struct Look {
-    bool other = false, away = false;
+  // Result of a poll: `other` when some file has changed since the poll before, `missing` when a needed file is missing.
+  struct PollResult {
+    bool other = false, missing = false;
   };
   static std::optional<Stamp> stamp_of(const std::string& path);
-  Look look();
+  PollResult poll();
 
-  std::vector<Watched> files_;
+  std::vector<WatchedFile> files_;
   bool changed_ = false;
 };
 

@@ -17,12 +17,12 @@
 
 namespace fathom::runtime {
 
-enum class Stage : std::uint8_t { March, Resolve, Normals, Shading, Film };
+enum class Stage : std::uint8_t { March, Certify, Normals, Shading, Film };
 
 // Names of the stages, in the order of the enum.
 inline constexpr const char* kStages[] = {
     "march",    // rays marched together
-    "resolve",  // the search in double (certify.h)
+    "certify",  // the search in double (certify.h)
     "normals",  // surfaces at the hits
     "shading",  // materials, and setting up new rays
     "film",     // paths added to their pixels

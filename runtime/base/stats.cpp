@@ -24,7 +24,7 @@ constexpr Row kRows[] = {
     {"rays", "rays", nullptr, &MarchCounters::rays},
     {"hits", "rays that hit", nullptr, &MarchCounters::hits},
     {"misses", "rays that missed", nullptr, &MarchCounters::misses},
-    {"contacts", "contacts", nullptr, &MarchCounters::contacts},
+    {"near_misses", "near_misses", nullptr, &MarchCounters::near_misses},
     {"invalid_rays", "invalid rays", nullptr, &MarchCounters::invalid},
     {"clipped_rays", "rays past the bound", nullptr, &MarchCounters::clipped},
     {"certified_rays", "rays searched in double", nullptr, &MarchCounters::certified},
@@ -138,7 +138,7 @@ std::string to_table(const Stats& stats) {
   if (stats.region_bytes > 0) {
     text += fmt::format("{:<24}{:>16.1f}\n", "memory of regions, MB", static_cast<double>(stats.region_bytes) * 1e-6);
     text += fmt::format("{:<24}{:>16.3f}\n", "seconds of regions", stats.region_seconds);
-    if (stats.regions_kept > 0) text += fmt::format("{:<24}{:>16}\n", "regions kept", stats.regions_kept);
+    if (stats.regions_reused > 0) text += fmt::format("{:<24}{:>16}\n", "regions kept", stats.regions_reused);
   }
   if (stats.peak_memory > 0) {
     text += fmt::format("{:<24}{:>16.1f}\n", "peak memory, MB", static_cast<double>(stats.peak_memory) * 1e-6);
@@ -158,7 +158,7 @@ std::string to_json(const Stats& stats) {
   if (stats.stages) text += fmt::format("  \"stage_seconds\": {},\n", stage_json(*stats.stages));
   text += fmt::format("  \"region_bytes\": {},\n", stats.region_bytes);
   text += fmt::format("  \"region_seconds\": {:.6g},\n", stats.region_seconds);
-  text += fmt::format("  \"regions_kept\": {},\n", stats.regions_kept);
+  text += fmt::format("  \"regions_reused\": {},\n", stats.regions_reused);
   text += fmt::format("  \"resumed_samples\": {},\n", stats.resumed_samples);
   text += fmt::format("  \"checkpoints\": {},\n", stats.checkpoints);
   text += fmt::format("  \"peak_memory\": {},\n", stats.peak_memory);

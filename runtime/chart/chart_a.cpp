@@ -48,7 +48,7 @@ std::string tooltip_of(const RayMeasurement& row, const std::string& name) {
               : fmt::format("failures {} ppm: false hits {}, false misses {}, out of steps {}, gross errors {}\n",
                             readable(failures), readable(row.false_hit_ppm), readable(row.false_miss_ppm),
                             readable(row.exhausted_ppm), readable(row.gross_ppm));
-  return text + fmt::format("contacts {} ppm; {} rays", readable(row.contact_ppm), row.rays);
+  return text + fmt::format("near misses {} ppm; {} rays", readable(row.near_miss_ppm), row.rays);
 }
 
 // Assigns colours to the methods of one scene, the same in every panel.

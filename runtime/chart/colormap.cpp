@@ -37,20 +37,20 @@ constexpr Glyph kGlyphs[] = {
 
 int width_of(std::string_view text) { return static_cast<int>(text.size()) * kAdvance - 1; }
 
-void paint(Picture& picture, int x, int y, const Rgb& color) {
+void paint(ByteImage& picture, int x, int y, const Rgb& color) {
   if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
   const std::size_t at =
       3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x));
   std::copy(color.begin(), color.end(), picture.rgb.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-void fill(Picture& picture, int left, int top, int width, int height, const Rgb& color) {
+void fill(ByteImage& picture, int left, int top, int width, int height, const Rgb& color) {
   for (int y = top; y < top + height; ++y) {
     for (int x = left; x < left + width; ++x) paint(picture, x, y, color);
   }
 }
 
-void write(Picture& picture, int left, int top, std::string_view text, const Rgb& color) {
+void write(ByteImage& picture, int left, int top, std::string_view text, const Rgb& color) {
   for (const char letter : text) {
     for (const Glyph& glyph : kGlyphs) {
       if (glyph.letter != letter) continue;
@@ -97,14 +97,14 @@ std::vector<double> marks_of(const ColorScale& scale, int most) {
 }
 
 // Draws a box of one colour with its name below. Returns the left end of the next element.
-int draw_box(Picture& picture, int left, int top, const Rgb& color, std::string_view name) {
+int draw_box(ByteImage& picture, int left, int top, const Rgb& color, std::string_view name) {
   fill(picture, left, top + kBarTop, kBoxWidth, kBarHeight, color);
   write(picture, left + (kBoxWidth - width_of(name)) / 2, top + kBarTop + kBarHeight + kTickHeight + kTextGap, name,
         kLabelInk);
   return left + kBoxWidth + kMargin;
 }
 
-void draw_scale(Picture& picture, int top, const ColorScale& scale) {
+void draw_scale(ByteImage& picture, int top, const ColorScale& scale) {
   fill(picture, 0, top, picture.width, kScaleHeight, kPaper);
   const bool named = picture.width >= kNarrowest;
   int left = kMargin;
@@ -165,13 +165,13 @@ ColorScale scale_for(std::span<const float> values, bool logarithmic) {
   return {false, lo < 0 ? -round_up(-lo) : 0, hi > 0 ? round_up(hi) : 0};
 }
 
-Picture draw_map(std::span<const float> values, int width, int height, const ColorScale& scale) {
+ByteImage draw_map(std::span<const float> values, int width, int height, const ColorScale& scale) {
   if (width < 1 || height < 1 ||
       values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     throw std::invalid_argument(
         fmt::format("a map of {} x {} pixels cannot have {} values", width, height, values.size()));
   }
-  Picture picture{width, height + kScaleHeight, {}};
+  ByteImage picture{width, height + kScaleHeight, {}};
   picture.rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(picture.height));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const Rgb color = scale.color(static_cast<double>(values[i]));

@@ -39,6 +39,6 @@ ColorScale scale_for(std::span<const float> values, bool logarithmic);
 // grey and black. The image is `kScaleHeight` pixels higher than the map. Below 160 pixels of width the strip has no
 // text. Throws std::invalid_argument unless there are width * height values.
 inline constexpr int kScaleHeight = 34;
-Picture draw_map(std::span<const float> values, int width, int height, const ColorScale& scale);
+ByteImage draw_map(std::span<const float> values, int width, int height, const ColorScale& scale);
 
 }  // namespace fathom::runtime

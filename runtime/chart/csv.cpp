@@ -44,7 +44,7 @@ constexpr CsvColumn<MeasuredRay> kRayColumns[] = {
     {"false_hit_ppm", of_row<MeasuredRay, &MeasuredRay::false_hit_ppm>},
     {"false_miss_ppm", of_row<MeasuredRay, &MeasuredRay::false_miss_ppm>},
     {"exhausted_ppm", of_row<MeasuredRay, &MeasuredRay::exhausted_ppm>},
-    {"contact_ppm", of_row<MeasuredRay, &MeasuredRay::contact_ppm>},
+    {"near_miss_ppm", of_row<MeasuredRay, &MeasuredRay::near_miss_ppm>},
     {"gross_ppm", of_row<MeasuredRay, &MeasuredRay::gross_ppm>},
     {"terr_p50", of_row<MeasuredRay, &MeasuredRay::terr_p50>},
     {"terr_p99", of_row<MeasuredRay, &MeasuredRay::terr_p99>},

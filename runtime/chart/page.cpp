@@ -90,7 +90,7 @@ constexpr TableColumn kColumns[] = {
     {"error max", number_of<&RayMeasurement::terr_max>},
     {"normal p99, rad", number_of<&RayMeasurement::nerr_p99>},
     {"failures, ppm", failures_of},
-    {"contacts, ppm", number_of<&RayMeasurement::contact_ppm>},
+    {"near misses, ppm", number_of<&RayMeasurement::near_miss_ppm>},
     {"Pareto front",
      [](const RayMeasurement& row, const TableRows& scene) {
        if (row.reference) return std::string("reference");

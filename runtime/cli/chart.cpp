@@ -147,11 +147,11 @@ class Charts {
   void add_pictures(const compiler::CompiledScene& scene, runtime::PageScene& section) {
     const runtime::ImagePlan& plan = request_.images;
     say(fmt::format("{}: pictures of {}x{}, {} seeds\n", section.name, plan.width, plan.height, plan.seeds));
-    const std::vector<runtime::ImageWay> ways = runtime::painted_ways(scene);
-    const auto rows = runtime::measure_images(scene, ways, plan, section.name);
+    const std::vector<runtime::ImageVariant> variants = runtime::image_variants(scene);
+    const auto rows = runtime::measure_images(scene, variants, plan, section.name);
     images_.insert(images_.end(), rows.begin(), rows.end());
     add_chart(section, "pictures", runtime::chart_b(rows, section.name, provenance_), runtime::kReadChartB);
-    const bool has_lights = std::any_of(ways.begin(), ways.end(), [](const runtime::ImageWay& way) {
+    const bool has_lights = std::any_of(variants.begin(), variants.end(), [](const runtime::ImageVariant& way) {
       return way.light_sampling != runtime::LightSampling::Mis;
     });
     if (!has_lights) return;
@@ -161,7 +161,7 @@ class Charts {
   void add_map(runtime::PageScene& section, const std::vector<float>& values, int width, int height,
                const std::string& suffix, const char* title, const char* reading) {
     const std::string name = fmt::format("{}-{}.png", section.name, suffix);
-    const runtime::Picture picture = runtime::draw_map(values, width, height, runtime::scale_for(values, true));
+    const runtime::ByteImage picture = runtime::draw_map(values, width, height, runtime::scale_for(values, true));
     if (!problem_) problem_ = runtime::write_image(picture, path_of(name));
     section.maps.push_back({name, title, reading});
   }

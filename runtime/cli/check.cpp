@@ -17,8 +17,8 @@
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/input/text_file.h"
 #include "runtime/cli/options/frame_options.h"
-#include "runtime/cli/options/held_messages.h"
-#include "runtime/cli/picture/picture_warning.h"
+#include "runtime/cli/options/buffered_messages.h"
+#include "runtime/cli/picture/image_warning.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/sampling/shutter.h"
 
@@ -33,7 +33,7 @@ constexpr const char* kCheckExamples =
     "fathom check --frames 0:192 hop.fathom         # each frame of an animation\n"
     "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
 
-constexpr int kMostProbes = 100'000'000;
+constexpr int kMaxProbes = 100'000'000;
 
 struct CheckRequest {
   SceneArguments scene;
@@ -51,7 +51,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   add_scene_arguments(arguments, request.scene, request.paths);
   arguments.option("--probe", "N",
                    "Compare gradients and differences at N points with the constants that the compiler proved",
-                   whole(request.probes, 1, kMostProbes));
+                   whole(request.probes, 1, kMaxProbes));
   arguments.option("--threads", "N", "Number of threads of --probe (one per processor)",
                    whole(request.threads, 1, 1024));
   add_frame_options(arguments, request.frames);
@@ -113,12 +113,12 @@ bool check_shutter(const SceneInput& input, const SceneArguments& frame, const c
                    const Sequence& sequence, int number, const Streams& streams) {
   if (!(scene.camera.shutter > 0) || !sequence.animation.time) return true;
   const double open = scene.camera.shutter / sequence.fps;
-  for (const runtime::ShutterRun& run :
-       runtime::shutter_runs(scene.settings.spp, runtime::kUsualShutterTimes, scene.settings.seed, number)) {
+  for (const runtime::ShutterInterval& run :
+       runtime::shutter_intervals(scene.settings.spp, runtime::kDefaultShutterTimes, scene.settings.seed, number)) {
     SceneArguments moment = frame;
     moment.definitions.emplace_back(compiler::kTimeParameter, sequence.time_of(number) + open * run.time);
     moment.inspect = nullptr;
-    HeldMessages held(streams);
+    BufferedMessages held(streams);
     if (std::holds_alternative<compiler::CompiledScene>(compile_scene(input, moment, held.streams()))) continue;
     held.release();
     return false;
@@ -138,9 +138,9 @@ ExitCode check_frames(const CheckRequest& request, SceneInput& input, const Stre
     const int frame = sequence.frames.at(index);
     const SceneArguments arguments = sequence.at(request.scene, frame);
     compiler::Scene graph;
-    HeldMessages held(streams);
+    BufferedMessages held(streams);
     const auto compiled = compile_checked(input, arguments, graph, held.streams());
-    held.release_news(last);
+    held.release_if_new(last);
     const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
     if (scene && !std::exchange(reported, true)) print_report(request, *scene, graph, streams);
     if (scene && check_shutter(input, arguments, *scene, sequence, frame, streams)) continue;

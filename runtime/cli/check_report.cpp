@@ -93,8 +93,8 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
       costs = fmt::format("{} makes steps {:.3g}x shorter", text(object.costliest->place, source),
                           object.costliest->times);
     }
-    rows.push_back({object.name, std::string(class_of(object.knowledge)), fmt::format("{:.4g}", object.lipschitz),
-                    fmt::format("{:.3g}", 1 / object.lipschitz), describe(object.knowledge.box), costs});
+    rows.push_back({object.name, std::string(class_of(object.facts)), fmt::format("{:.4g}", object.lipschitz),
+                    fmt::format("{:.3g}", 1 / object.lipschitz), describe(object.facts.box), costs});
   }
   return table(rows);
 }
@@ -116,12 +116,12 @@ std::string certificate(const compiler::Report& report, const compiler::Source& 
   std::string nodes, operations;
   std::size_t listed = 0;
   for (const compiler::Estimate& estimate : report.estimates) {
-    if (++listed > compiler::Report::kMostSearched) continue;
+    if (++listed > compiler::Report::kMaxSearched) continue;
     nodes += fmt::format("{}the {}", listed > 1 ? ", " : "", text(estimate, source));
     if (estimate.operation) operations += describe_operation(*estimate.operation, source);
   }
-  if (listed > compiler::Report::kMostSearched) {
-    nodes += fmt::format(", and {} more", listed - compiler::Report::kMostSearched);
+  if (listed > compiler::Report::kMaxSearched) {
+    nodes += fmt::format(", and {} more", listed - compiler::Report::kMaxSearched);
   }
   return fmt::format("not certified: nothing is proved of {}\n{}", nodes, operations);
 }
@@ -151,7 +151,7 @@ std::string report_json(const compiler::CompiledScene& scene, const compiler::Re
       costliest = json(object.costliest->place, scene.source);
       costliest["times"] = object.costliest->times;
     }
-    const compiler::Knowledge& known = object.knowledge;
+    const compiler::NodeFacts& known = object.facts;
     out += line({{"object", object.name},
                  {"class", class_of(known)},
                  {"certified", known.certified},

@@ -79,7 +79,8 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "File to write, usually .fbc; - is standard output", any_text(output));
   arguments.flag("--strip", "Leave out the names of instructions and their places in the scene", strip);
-  arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and no constant is proved", no_text);
+  arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and `check` has nothing to prove",
+                 no_text);
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(scene_arguments.path, output.value_or(""), streams)) return *code;
   auto input = read_scene_text(scene_arguments, streams);
@@ -106,7 +107,7 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
   auto text = read_text(path, limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&text)) return fail(streams, path, *read_error);
   const compiler::Source listing(source_name(path), std::get<std::string>(std::move(text)));
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;

@@ -255,7 +255,7 @@ int run_completion(std::span<const std::string> args, const Streams& streams) {
   arguments.positional("shell", "bash, zsh or fish", name, true, "SHELL", {shells.begin(), shells.end()});
   if (const auto code = arguments.parse(args, streams)) return *code;
   int shell = 0;
-  if (const Verdict wrong = one_of(shells, shell)(name)) {
+  if (const OptionResult wrong = one_of(shells, shell)(name)) {
     return fail(streams, kUsage, fmt::format("unknown shell: {}", wrong->problem),
                 wrong->help.empty() ? Help{} : Help{wrong->help});
   }

@@ -63,14 +63,14 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   std::string text;
   if (compiler::is_text_scene(source.text())) {
     const auto kept =
-        compiler::read_kept(source, ignored, scene_arguments.limits, import_reader(scene_arguments, streams));
+        compiler::read_with_formulas(source, ignored, scene_arguments.limits, import_reader(scene_arguments, streams));
     note_frozen(kept->frozen, source, streams);
     text = compiler::write_json(kept->file, compiler::comments_of_text(source, kept->file));
   } else {
     const auto scene = compiler::read_scene(source, ignored, scene_arguments.limits);
     text = compiler::text::print_text(scene->file, source);
   }
-  return put_text(text, output, streams);
+  return write_text_output(text, output, streams);
 }
 
 }  // namespace fathom::cli

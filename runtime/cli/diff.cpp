@@ -62,7 +62,7 @@ constexpr Metric kMetrics[] = {
 struct DiffRequest {
   std::string first, second;
   std::optional<Output> map;
-  int format = -1;  // format of -o -, see put_formats()
+  int format = -1;  // format of -o -, see apply_format()
   std::optional<double> tolerance;
   compiler::Limits limits;
   int metric = -1;  // an index into kMetrics; -1: not given
@@ -74,9 +74,9 @@ std::span<Output> map_of(DiffRequest& request) {
   return request.map ? std::span<Output>(&*request.map, 1) : std::span<Output>();
 }
 
-Verdict read_tolerance(std::string_view text, double& tolerance) {
+OptionResult read_tolerance(std::string_view text, double& tolerance) {
   const std::optional<double> number = to_number(text);
-  if (!number || *number < 0) return Complaint{fmt::format("`{}` is not a number from 0", text), ""};
+  if (!number || *number < 0) return OptionError{fmt::format("`{}` is not a number from 0", text), ""};
   tolerance = *number;
   return std::nullopt;
 }
@@ -95,7 +95,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    one_of(names, request.metric));
   arguments.option("-o,--output", "FILE",
                    "Also write a map of FLIP: violet is equal, yellow is different; - is standard output",
-                   into(read_shown_output, request.map));
+                   into(read_display_output, request.map));
   add_format_option(arguments, true, request.format);
   arguments.flag("--json", "Print the numbers as JSON", request.json);
   add_limit_option(arguments, request.limits);
@@ -103,7 +103,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (request.metric >= 0 && !request.tolerance) {
     return fail(streams, kUsage, "--metric says what --tol is about; there is no --tol");
   }
-  return put_formats(map_of(request), request.format, streams);
+  return apply_format(map_of(request), request.format, streams);
 }
 
 // Linear colours of an image file. A file with a single channel has equal red, green and blue.
@@ -116,8 +116,8 @@ struct Colors {
 std::variant<Colors, ExitCode> read_colors(const std::string& path, const compiler::Limits& limits,
                                            const Streams& streams) {
   const auto read = runtime::read_image(path, read_limits(limits));
-  if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
-    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
+  if (const auto* read_error = std::get_if<runtime::ImageReadError>(&read)) {
+    return fail(streams, read_error->missing ? kIo : kBadScene, read_error->problem);
   }
   const auto& image = std::get<runtime::FloatImage>(read);
   Colors colors{image.area.width(), image.area.height(), {}};
@@ -150,8 +150,8 @@ std::string json(const Measured& measured) {
   return object.dump(2) + '\n';
 }
 
-runtime::Picture map_picture(const runtime::Flip& flip, int width, int height) {
-  runtime::Picture picture{width, height, {}};
+runtime::ByteImage map_image(const runtime::Flip& flip, int width, int height) {
+  runtime::ByteImage picture{width, height, {}};
   for (const float error : flip.map) {
     const runtime::Rgb color = runtime::viridis(static_cast<double>(error));
     picture.rgb.insert(picture.rgb.end(), color.begin(), color.end());
@@ -204,7 +204,7 @@ int run_diff(std::span<const std::string> args, const Streams& streams) {
   const bool taken = request.map && request.map->standard();
   (taken ? streams.err : streams.out) << (request.json ? json(measured) : table(measured));
   if (request.map) {
-    const runtime::Picture map = map_picture(measured.flip, picture.width, picture.height);
+    const runtime::ByteImage map = map_image(measured.flip, picture.width, picture.height);
     const Fill fill = [&](runtime::AtomicFile& file) {
       return runtime::write_image(map, request.map->format->format, file);
     };

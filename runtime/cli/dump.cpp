@@ -174,7 +174,7 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
 
 std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const DumpRequest& request,
                                      const Streams& streams) {
-  if (!request.run || trace_work(program_of(scene, request)) <= kMostTraceWork) return std::nullopt;
+  if (!request.run || trace_work(program_of(scene, request)) <= kMaxTraceWork) return std::nullopt;
   return fail(streams, kUsage, "the program is too long to be run once for each of its instructions",
               {"--region lists the few of them that matter in the region at a point"});
 }
@@ -264,9 +264,9 @@ int run_dump(std::span<const std::string> args, const Streams& streams) {
       request.stage >= kBytecode && !request.after && !request.region && request.scene.definitions.empty();
   if (input.stored && as_stored) {
     if (const auto code = check_length(input.stored->scene, request, streams)) return *code;
-    const bool whole = request.stage == kFile;  // print claims as stored, without proving them
-    streams.out << print_compiled(whole ? input.stored->scene : proved_or_claimed(input), request,
-                                  input.stored->contents);
+    const compiler::StoredScene& stored = *input.stored;
+    streams.out << print_compiled(request.stage == kFile ? stored.scene : as_claimed(stored.scene), request,
+                                  stored.contents);
     return kDone;
   }
   if (input.stored && !input.stored->contents.text) {

@@ -35,9 +35,9 @@ struct EmitRequest {
 
 // Makes a Setter that accepts a name unless `problem_with` returns a problem.
 Setter identifier(std::string (*problem_with)(std::string_view), std::optional<std::string>& target) {
-  return [problem_with, &target](std::string_view text) -> Verdict {
+  return [problem_with, &target](std::string_view text) -> OptionResult {
     if (std::string problem = problem_with(text); !problem.empty()) {
-      return Complaint{fmt::format("`{}` cannot be a name there", text), std::move(problem)};
+      return OptionError{fmt::format("`{}` cannot be a name there", text), std::move(problem)};
     }
     target = text;
     return std::nullopt;
@@ -56,7 +56,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option("--name", "NAME", "glsl: prefix of all names (scene)",
                    identifier(compiler::problem_with_glsl_name, request.name));
   if (const auto code = arguments.parse(args, streams)) return code;
-  if (const Verdict wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
+  if (const OptionResult wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
     return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem),
                 {wrong->help.empty() ? "there are cpp and glsl" : wrong->help});
   }

@@ -73,7 +73,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
 std::optional<ExitCode> read_points(const std::string& path, const compiler::Limits& limits, const Streams& streams,
                                     std::vector<glm::dvec3>& points) {
   const auto read = read_text(path, limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&read)) return fail(streams, path, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&read)) return fail(streams, path, *read_error);
   std::string_view rest = std::get<std::string>(read);
   for (int number = 1; !rest.empty(); ++number) {
     const std::size_t end = rest.find('\n');

@@ -28,7 +28,7 @@ enum class FmtMode { Print, Write, Check };
 // Prints, rewrites or checks one file, depending on `mode`.
 ExitCode format_file(const std::string& path, FmtMode mode, const compiler::Limits& limits, const Streams& streams) {
   auto read = read_text(path, limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&read)) return fail(streams, path, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&read)) return fail(streams, path, *read_error);
   const compiler::Source source(source_name(path), std::get<std::string>(std::move(read)));
   if (!compiler::is_text_scene(source.text())) {
     return fail(streams, kBadScene, fmt::format("{} does not begin with `fathom 1`", cli::quoted(path)),

@@ -58,18 +58,18 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::optional<compiler::ReadScene> model =
       compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments, streams));
-  const bool foreign =
+  const bool not_a_film =
       model && model->format != compiler::SceneFormat::Scene && model->format != compiler::SceneFormat::Text;
-  if (!foreign && !compiled_file) {
+  if (!not_a_film && !compiled_file) {
     return fail(streams, kUsage, fmt::format("{} is a scene file already", cli::quoted(scene_arguments.path)));
   }
   std::string text = source.text();
-  if (foreign) {
+  if (not_a_film) {
     if (!bare) compiler::set_stage(*model, std::get<compiler::CompiledScene>(compiled));
     text = fmt::format("// From {}.\n", printable(cli::quoted(scene_arguments.path))) +
            compiler::write_json(model->file);
   }
-  return put_text(text, output, streams);
+  return write_text_output(text, output, streams);
 }
 
 }  // namespace fathom::cli

@@ -54,7 +54,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   request.pictures.deep = request.bits != 0;
   request.pictures.noisy = request.denoise;
   if (request.pictures.outputs.empty()) return fail(streams, kUsage, "no file to write", {"name it with -o FILE"});
-  if (const auto code = put_formats(request.pictures.outputs, request.format, streams)) return code;
+  if (const auto code = apply_format(request.pictures.outputs, request.format, streams)) return code;
   if (const auto code = check_bits(request.pictures, streams)) return code;
   std::vector<std::string> files = files_of(request.pictures);
   for (const std::string& input : request.inputs) {
@@ -69,15 +69,15 @@ struct Part {
   runtime::FilmFile file;
 };
 
-ExitCode fail_to_read(const runtime::UnreadFilm& unread, const Streams& streams) {
-  return fail(streams, unread.missing ? kIo : kBadScene, unread.problem);
+ExitCode fail_to_read(const runtime::FilmReadError& read_error, const Streams& streams) {
+  return fail(streams, read_error.missing ? kIo : kBadScene, read_error.problem);
 }
 
 std::variant<std::vector<Part>, ExitCode> read_parts(const MergeRequest& request, const Streams& streams) {
   std::vector<Part> parts;
   for (const std::string& path : request.inputs) {
     auto read = runtime::read_film_header(path, read_limits(request.limits));
-    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return fail_to_read(*unread, streams);
+    if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return fail_to_read(*read_error, streams);
     parts.push_back({path, std::get<runtime::FilmFile>(std::move(read))});
   }
   // The parts are sorted because the sum takes some facts from the first part. The order of the command line must not
@@ -149,7 +149,7 @@ runtime::FilmFile frame_of(const std::vector<Part>& parts) {
 std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vector<Part>& parts,
                                      const runtime::FilmShape& sum, const Streams& streams) {
   const auto film = static_cast<double>(runtime::Film::memory_per_pixel(sum.layers, sum.stages));
-  const double each = film + kPictureBytes + (request.denoise ? kDenoiserBytes : 0) +
+  const double each = film + kImageBytes + (request.denoise ? kDenoiserBytes : 0) +
                       (holds_whole(request.pictures.outputs) ? film : 0);
   double needed = each * static_cast<double>(sum.area.pixels()), part = 0;
   for (const Part& other : parts) part = std::max(part, film * static_cast<double>(other.file.shape.area.pixels()));
@@ -159,7 +159,7 @@ std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vec
   return fail(
       streams, kBadScene,
       fmt::format("the sum would take {} of memory ({}x{} pixels of {:.0f} bytes, and a part); {} are allowed",
-                  in_words(needed), sum.area.width(), sum.area.height(), each, in_words(allowed)),
+                  format_bytes(needed), sum.area.width(), sum.area.height(), each, format_bytes(allowed)),
       {"merge films that lie closer together, for what lies between them counts, too",
        compiler::raise(&compiler::Limits::memory, needed)});
 }
@@ -168,7 +168,7 @@ std::optional<ExitCode> check_memory(const MergeRequest& request, const std::vec
 std::variant<runtime::FilmFile, ExitCode> read_sums(const Part& part, const compiler::Limits& limits,
                                                     const Streams& streams) {
   auto read = runtime::read_film(part.path, read_limits(limits));
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return fail_to_read(*unread, streams);
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return fail_to_read(*read_error, streams);
   auto& file = std::get<runtime::FilmFile>(read);
   if (file.shape == part.file.shape && file.render.covered == part.file.render.covered &&
       file.header.identity == part.file.header.identity) {
@@ -191,10 +191,10 @@ std::optional<ExitCode> add_up(const std::vector<Part>& parts, const compiler::L
       sum.render = std::move(file.render);
       return std::nullopt;
     }
-    if (!sum.render.film.merge(file.render.film)) warn(streams, lost_text(fmt::format("samples of `{}`", part.path)));
+    if (!sum.render.film.merge(file.render.film)) warn(streams, overflow_text(fmt::format("samples of `{}`", part.path)));
     sum.render.covered.front().add(file.render.covered.front());
   }
-  sum.render.covered.front().tidy();
+  sum.render.covered.front().canonicalise();
   return std::nullopt;
 }
 
@@ -221,10 +221,10 @@ int run_merge(std::span<const std::string> args, const Streams& streams) {
     note(streams, "the films are not all of it: there are no " + text_of(missing.front()) +
                       (missing.size() > 1 ? ", among others" : ""));
   }
-  put_tone(request, sum.header.attributes);
+  override_tone(request, sum.header.attributes);
   if (request.denoise) runtime::denoise(sum.render.film, 1);
   std::vector<std::string> lines;
-  const auto problem = write_pictures(request.pictures, sum.header, sum.render, std::nullopt, lines, streams);
+  const auto problem = write_image_files(request.pictures, sum.header, sum.render, std::nullopt, lines, streams);
   for (const std::string& line : lines) {
     if (!request.quiet) streams.err << line << '\n';
   }

@@ -70,9 +70,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   add_scene_arguments(arguments, request.render.scene);
   add_options(arguments, request);
   arguments.group("Picture");
-  add_picture_options(arguments, request.render);
+  add_image_options(arguments, request.render);
   if (const auto code = arguments.parse(args, streams)) return *code;
-  for (const Arguments::Given& option : arguments.given()) {
+  for (const Arguments::ParsedOption& option : arguments.parsed_options()) {
     const bool own = std::ranges::find(kOwn, option.name) != kOwn.end();
     const bool runs = option.name == "--threads" || option.name == "--limit" || option.name == "--error-format";
     if (own && !runs) continue;
@@ -85,7 +85,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (!request.output) return fail(streams, kUsage, "no file to write", {"name it with -o plan.json"});
   if (const auto code = check_collisions(request.render.scene.path, {*request.output}, streams)) return *code;
   if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
-  if (const auto code = settle(request.render, streams)) return *code;
+  if (const auto code = resolve_options(request.render, streams)) return *code;
   return std::nullopt;
 }
 
@@ -115,7 +115,7 @@ std::optional<ExitCode> take_scene(PlanRequest& request, RenderPlan& plan, const
 }
 
 // Takes from the first frame the settings that all frames share.
-std::optional<ExitCode> take_settings(const Picture& picture, RenderPlan& plan, const Streams& streams) {
+std::optional<ExitCode> take_settings(const PreparedRender& picture, RenderPlan& plan, const Streams& streams) {
   const runtime::RenderOptions& options = picture.request.options;
   const runtime::Settings settings = runtime::resolve(picture.scene, options);
   if (settings.noise_threshold) {
@@ -128,8 +128,8 @@ std::optional<ExitCode> take_settings(const Picture& picture, RenderPlan& plan, 
   const compiler::Background& background = picture.scene.background;
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
   auto bytes = read_text(background.image.file, picture.request.scene.limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&bytes))
-    return fail(streams, background.image.file, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&bytes))
+    return fail(streams, background.image.file, *read_error);
   plan.background_name = background.image.file;
   plan.background = std::get<std::string>(std::move(bytes));
   return std::nullopt;
@@ -140,7 +140,7 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
   if (request.tiles) grid.columns = request.tiles->width, grid.rows = request.tiles->height;
   if (!request.no_pilot) {
     const double frame = pilot.frame_seconds(grid), all = frame * static_cast<double>(grid.frame_count());
-    cut(grid, request.tiles.has_value(), frame, request.unit_time.value_or(usual_unit_seconds(all, request.workers)));
+    cut(grid, request.tiles.has_value(), frame, request.unit_time.value_or(default_unit_seconds(all, request.workers)));
   }
   if (request.block) grid.block = std::min(static_cast<std::uint32_t>(*request.block), grid.spp);
   if (grid.columns > grid.width || grid.rows > grid.height) {
@@ -149,7 +149,7 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
                             grid.width, grid.height));
   }
   if (!too_many_units(grid)) return std::nullopt;
-  return fail(streams, kUsage, fmt::format("a plan has {:.0f} units at most", kMostUnits),
+  return fail(streams, kUsage, fmt::format("a plan has {:.0f} units at most", kMaxUnits),
               {"cut fewer tiles or larger blocks of samples, or let --unit-time say how many"});
 }
 
@@ -194,19 +194,19 @@ int run_plan(std::span<const std::string> args, const Streams& streams) {
   }
   RenderPlan plan;
   if (const auto code = take_scene(request, plan, streams)) return *code;
-  PlannedPictures pictures(plan, streams);
+  PlanFrames pictures(plan, streams);
   if (const auto code = pictures.open(request.running, "")) return *code;
   const auto first = pictures.at(0);
   if (const auto* code = std::get_if<ExitCode>(&first)) return *code;
-  if (const auto code = take_settings(*std::get<Picture*>(first), plan, streams)) return *code;
+  if (const auto code = take_settings(*std::get<PreparedRender*>(first), plan, streams)) return *code;
   Pilot pilot;
   if (!request.no_pilot) {
     if (const auto code = pilot.run(pictures, plan.grid, streams)) return *code;
   }
   if (const auto code = put_grid(request, pilot, plan.grid, streams)) return *code;
   const auto text = write_plan(plan);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    return fail(streams, unreadable->code, unreadable->reason, {unreadable->help});
+  if (const auto* read_error = std::get_if<ReadError>(&text)) {
+    return fail(streams, read_error->code, read_error->reason, {read_error->help});
   }
   if (const auto problem = write_text(std::get<std::string>(text), *request.output))
     return fail(streams, kIo, *problem);

@@ -10,7 +10,7 @@
 
 #include "runtime/cli/frames/render_files.h"
 #include "runtime/cli/frames/sequence.h"
-#include "runtime/cli/picture/picture_job.h"
+#include "runtime/cli/picture/render_job.h"
 #include "runtime/cli/plan/unit_run.h"
 #include "runtime/cli/request/render_options.h"
 #include "runtime/cli/verbs.h"
@@ -25,27 +25,27 @@ bool asks_for_checkpoint(std::span<const std::string> args) {
 }
 
 // Renders one image of the scene file in its current state.
-ExitCode render_once(const RenderRequest& request, KeptWork& kept, const Streams& streams, Watching* watching,
+ExitCode render_once(const RenderRequest& request, RenderCache& cache, const Streams& streams, WatchState* watching,
                      std::optional<Interruption>& interruption) {
   const auto input = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
-  const auto picture = prepare_picture(request, std::get<SceneInput>(input), kept, streams);
+  const auto picture = prepare_render(request, std::get<SceneInput>(input), cache, streams);
   if (const auto* code = std::get_if<ExitCode>(&picture)) return *code;
-  return PictureJob(*std::get<std::unique_ptr<Picture>>(picture), streams, watching, interruption).run();
+  return RenderJob(*std::get<std::unique_ptr<PreparedRender>>(picture), streams, watching, interruption).run();
 }
 
 // Renders again after every change until a signal ends the program. Files are written atomically, so the signal may
 // come at any moment.
 [[noreturn]] void render_on_change(RenderRequest request, const Streams& streams) {
-  Watching watching{runtime::FileWatch({request.scene.path})};
+  WatchState watching{runtime::FileWatch({request.scene.path})};
   request.scene.on_import = [&](const std::string& path) { watching.files.add(path); };
   std::optional<Interruption> none;
-  KeptWork kept;
+  RenderCache cache;
   for (bool first = true;; first = false) {
     watching.changed = false;
-    kept.background = nullptr;  // the background's file may have changed
-    kept.messages.clear();
-    render_once(request, kept, streams, &watching, none);
+    cache.background = nullptr;  // the background's file may have changed
+    cache.messages.clear();
+    render_once(request, cache, streams, &watching, none);
     if (first && !request.quiet) {
       note(streams, fmt::format("drawing again whenever {} changes; Ctrl-C ends", request.scene.path));
     }
@@ -69,7 +69,7 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
   if (request.units.given()) return render_units(request, streams, interruption);
-  if (const auto code = check_bits(pictures_of(request), streams)) return *code;
+  if (const auto code = check_bits(image_files_of(request), streams)) return *code;
   if (request.frames.given()) return render_frames(request, streams, interruption);
   if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
@@ -77,8 +77,8 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
     interruption.reset();
     render_on_change(request, streams);
   }
-  KeptWork kept;
-  return render_once(request, kept, streams, nullptr, interruption);
+  RenderCache cache;
+  return render_once(request, cache, streams, nullptr, interruption);
 }
 
 }  // namespace fathom::cli

@@ -54,7 +54,7 @@ int run_schema(std::span<const std::string> args, const Streams& streams) {
     return write_extension(*output, streams);
   }
   const std::string text = editor == 1 ? vim_syntax() : compiler::scene_schema();
-  return put_text(text, output, streams);
+  return write_text_output(text, output, streams);
 }
 
 }  // namespace fathom::cli

@@ -51,7 +51,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   arguments.option(
       "-o,--output", "FILE",
       "Picture to write: .png, .jpg, .jpeg or .bmp; - is standard output (the scene's name with -slice.png)",
-      into(read_shown_output, output));
+      into(read_display_output, output));
   add_format_option(arguments, true, format);
   arguments.option("--axis", "AXIS", "Axis perpendicular to the plane: x, y or z (z)",
                    one_of({"x", "y", "z"}, request.axis));
@@ -67,13 +67,13 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (const auto code = arguments.parse(args, streams)) return code;
 
   if (!request.size) request.size = PixelSize{512, 512};
-  if (const auto code = check_picture_size(request.size->width, request.size->height, request.scene.limits, streams))
+  if (const auto code = check_image_size(request.size->width, request.size->height, request.scene.limits, streams))
     return code;
   request.output = output.value_or(default_output(request.scene.path));
   const std::span<Output> named(&request.output, output ? 1 : 0);
-  if (const auto code = put_formats(named, format, streams)) return *code;
+  if (const auto code = apply_format(named, format, streams)) return *code;
   if (output) return std::nullopt;
-  request.output.path = beside(request.output.path, "slice");
+  request.output.path = with_suffix(request.output.path, "slice");
   note(streams, fmt::format("the picture goes to {}; -o FILE chooses another name", request.output.path));
   return std::nullopt;
 }
@@ -108,14 +108,14 @@ std::string describe_bands(const std::vector<float>& field, double step) {
 
 // An image and its line of text. The line goes to standard output unless the image does.
 struct Drawing {
-  runtime::Picture picture;
+  runtime::ByteImage picture;
   std::string line;
 };
 
 Drawing draw(const SliceRequest& request, const runtime::Slice& slice, const std::vector<float>& field) {
-  if (request.show == kSign) return {runtime::sign_picture(field, slice.width, slice.height), count_inside(field)};
+  if (request.show == kSign) return {runtime::sign_image(field, slice.width, slice.height), count_inside(field)};
   const double step = runtime::band_step(slice.hi.y - slice.lo.y);
-  return {runtime::distance_picture(field, slice.width, slice.height, step), describe_bands(field, step)};
+  return {runtime::distance_image(field, slice.width, slice.height, step), describe_bands(field, step)};
 }
 
 void note_invalid(const std::vector<float>& field, const Streams& streams) {

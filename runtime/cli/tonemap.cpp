@@ -9,7 +9,7 @@
 #include "runtime/cli/input/scene_arguments.h"
 #include "runtime/cli/options/arguments.h"
 #include "runtime/cli/options/output_file.h"
-#include "runtime/cli/picture/picture_attributes.h"
+#include "runtime/cli/picture/image_attributes.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
 #include "runtime/image/image_read.h"
@@ -25,7 +25,7 @@ constexpr const char* kTonemapExamples =
 struct TonemapRequest {
   std::string input;
   std::optional<Output> output;
-  int format = -1;  // format of -o -, see put_formats()
+  int format = -1;  // format of -o -, see apply_format()
   std::optional<double> exposure;
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int layer = 0;  // a runtime::Layer
@@ -43,7 +43,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   Arguments arguments("tonemap", "Converts the numbers of a render to a picture.", kTonemapExamples);
   arguments.positional("picture", "File to read: " + runtime::image_endings(), request.input);
   arguments.option("-o,--output", "FILE", "Picture to write: .png, .jpg, .jpeg or .bmp; - is standard output",
-                   into(read_shown_output, request.output));
+                   into(read_display_output, request.output));
   add_format_option(arguments, true, request.format);
   arguments.option("--exposure", "STOPS", "Brightness of the picture in stops: 1 doubles it (the file's, or 0)",
                    into(read_exposure, request.exposure));
@@ -55,7 +55,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   add_limit_option(arguments, request.limits);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (!request.output) return fail(streams, kUsage, "no picture to write", {"name it with -o FILE"});
-  if (const auto code = put_formats({&*request.output, 1}, request.format, streams)) return code;
+  if (const auto code = apply_format({&*request.output, 1}, request.format, streams)) return code;
   const bool light = runtime::is_light(runtime::kLayers[static_cast<std::size_t>(request.layer)].layer);
   if (!light && (request.exposure || request.tone >= 0)) {
     return fail(streams, kUsage, "--exposure and --tone are about light: they do not go with another --layer");
@@ -68,8 +68,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-runtime::PictureOptions options_of(const TonemapRequest& request, const runtime::FloatImage& image) {
-  runtime::PictureOptions options{tone_in(image.attributes), request.bits == 0 ? 8 : 16};
+runtime::ImageOptions options_of(const TonemapRequest& request, const runtime::FloatImage& image) {
+  runtime::ImageOptions options{tone_in(image.attributes), request.bits == 0 ? 8 : 16};
   if (request.exposure) options.tone.exposure = *request.exposure;
   if (request.tone >= 0) options.tone.curve = static_cast<compiler::ToneCurve>(request.tone);
   return options;
@@ -90,8 +90,8 @@ int run_tonemap(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = parse(args, streams, request)) return *code;
   if (const auto code = check_outputs(request.input, {&*request.output, 1}, streams)) return *code;
   const auto read = runtime::read_image(request.input, read_limits(request.limits));
-  if (const auto* unread = std::get_if<runtime::UnreadImage>(&read)) {
-    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem);
+  if (const auto* read_error = std::get_if<runtime::ImageReadError>(&read)) {
+    return fail(streams, read_error->missing ? kIo : kBadScene, read_error->problem);
   }
   const auto& image = std::get<runtime::FloatImage>(read);
   const runtime::LayerInfo& layer = runtime::kLayers[static_cast<std::size_t>(request.layer)];

@@ -51,8 +51,8 @@ std::vector<float> filter(const DenoiseInput& input, int threads) {
 #else
 
 // Light is smoother than the texture it falls on, so radiance is filtered per albedo, except on black surfaces.
-constexpr float kLeastAlbedo = 0.05f;
-float divisor(float albedo) { return std::isfinite(albedo) ? std::max(albedo, kLeastAlbedo) : 1; }
+constexpr float kMinAlbedo = 0.05f;
+float divisor(float albedo) { return std::isfinite(albedo) ? std::max(albedo, kMinAlbedo) : 1; }
 
 float finite(float value) { return std::isfinite(value) ? value : 0; }
 

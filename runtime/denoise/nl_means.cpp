@@ -80,9 +80,9 @@ Plane noise_of(const NlMeansInput& input) {
   return noise;
 }
 
-NlMeansFrame frame(const NlMeansInput& input) {
-  NlMeansFrame framing{input.width, input.height, {}, {}, {}, {}, {}, {}, {}, {}, {}};
-  const auto framed = [&](const Plane& plane) { return Framed(plane, input.width, input.height); };
+NlMeansPlanes frame(const NlMeansInput& input) {
+  NlMeansPlanes framing{input.width, input.height, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  const auto framed = [&](const Plane& plane) { return PaddedPlane(plane, input.width, input.height); };
   for (std::size_t half = 0; half < 2; ++half) {
     for (std::size_t c = 0; c < 3; ++c) framing.copies[half][c] = framed(input.copies[half][c]);
   }
@@ -98,7 +98,7 @@ NlMeansFrame frame(const NlMeansInput& input) {
   return framing;
 }
 
-NlMeansFiltered filter(const NlMeansFrame& framing, int threads) {
+NlMeansFiltered filter(const NlMeansPlanes& framing, int threads) {
   NlMeansFiltered filtered;
   const std::size_t pixels = static_cast<std::size_t>(framing.width) * static_cast<std::size_t>(framing.height);
   for (auto& colors : filtered.colors) colors.fill(Plane(pixels));
@@ -132,7 +132,7 @@ std::array<Plane, kCandidates> choose(NlMeansFiltered& filtered, int width, int 
 }  // namespace
 
 std::array<Plane, 3> nl_means(const NlMeansInput& input, int threads) {
-  const NlMeansFrame framing = frame(input);
+  const NlMeansPlanes framing = frame(input);
   NlMeansFiltered filtered = filter(framing, threads);
   const std::array<Plane, kCandidates> shares = choose(filtered, input.width, input.height);
   std::array<Plane, 3> result;

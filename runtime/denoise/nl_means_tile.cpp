@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Lanes = hn::CappedTag<float, kMostLanes>;
+using Lanes = hn::CappedTag<float, kMaxLanes>;
 using V = hn::Vec<Lanes>;
 
 HWY_INLINE V k(float value) { return hn::Set(Lanes(), value); }
@@ -45,7 +45,7 @@ float fade(int dx, int dy) {
 
 class TileFilter {
  public:
-  TileFilter(const NlMeansFrame& frame, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& filtered)
+  TileFilter(const NlMeansPlanes& frame, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& filtered)
       : in_(frame), tile_(tile), width_(tile.x1 - tile.x0), buffers_(buffers), out_(filtered) {}
 
   void run() {
@@ -63,10 +63,10 @@ class TileFilter {
 
   void add_neighbours(int dx, int dy) {
     compare_pixels(dx, dy);
-    for (TileBuffers::Grown& distance : buffers_.distances) average_patches(distance);
+    for (TileBuffers::PaddedTile& distance : buffers_.distances) average_patches(distance);
     for (int y = tile_.y0; y < tile_.y1; ++y) {
       compare_features(y, dx, dy);
-      weigh(y, dx, dy);
+      compute_weights(y, dx, dy);
       for (std::size_t half = 0; half < 2; ++half) accumulate(y, dx, dy, half);
     }
   }
@@ -85,7 +85,7 @@ class TileFilter {
             hn::Div(hn::Mul(load(valid_p + x), load(valid_q + x)), hn::Add(hn::Add(here, there), k(1e-20f)));
         for (std::size_t half = 0; half < 2; ++half) {
           V sum = hn::Zero(Lanes());
-          for (const Framed& channel : in_.copies[half]) {
+          for (const PaddedPlane& channel : in_.copies[half]) {
             sum = hn::Add(sum, square(hn::Sub(load(channel.row(y) + p + x), load(channel.row(y + dy) + q + x))));
           }
           // A square beyond float's range counts as the largest number.
@@ -97,7 +97,7 @@ class TileFilter {
   }
 
   // Averages each patch into the element of its corner, times the weight of colour.
-  void average_patches(TileBuffers::Grown& distance) const {
+  void average_patches(TileBuffers::PaddedTile& distance) const {
     constexpr int kSide = 2 * kPatch + 1;
     const std::size_t height = row_of(tile_.y1);
     for (std::size_t y = 0; y < height + 2 * kPatch; ++y) {
@@ -132,32 +132,32 @@ class TileFilter {
       for (std::size_t group = 0; group < 2; ++group) {
         V squares = hn::Zero(Lanes());
         for (std::size_t i = 3 * group; i < 3 * group + 3; ++i) {
-          const Framed& feature = in_.features[i];
+          const PaddedPlane& feature = in_.features[i];
           squares =
               hn::Add(squares, square(hn::Sub(load(feature.row(y) + p + x), load(feature.row(y + dy) + q + x))));
         }
         sum = hn::Add(sum, hn::Mul(squares, load(in_.sharpness[group].row(y) + p + x)));
       }
-      store(hn::Mul(sum, k(kEighth)), buffers_.unlikeness.data() + x);
+      store(hn::Mul(sum, k(kEighth)), buffers_.dissimilarity.data() + x);
     });
   }
 
   // Computes each neighbour's weights: the factor that all sets share, and the weight by features alone, which both
   // copies share.
-  void weigh(int y, int dx, int dy) {
+  void compute_weights(int y, int dx, int dy) {
     const float* valid = in_.valid.row(y + dy) + tile_.x0 + dx;
     const V faded = k(fade(dx, dy));
     for_columns(width_, [&](int x) HWY_ATTR {
       const V share = hn::Mul(load(valid + x), faded);
       store(share, buffers_.share.data() + x);
-      store(hn::Mul(falloff(load(buffers_.unlikeness.data() + x)), share), buffers_.alike.data() + x);
+      store(hn::Mul(falloff(load(buffers_.dissimilarity.data() + x)), share), buffers_.similarity.data() + x);
     });
   }
 
   void accumulate(int y, int dx, int dy, std::size_t half) {
     const std::size_t at = row_of(y);
-    const float *distances = buffers_.distances[1 - half][at].data(), *unlikeness = buffers_.unlikeness.data();
-    const float *shares = buffers_.share.data(), *alike = buffers_.alike.data();
+    const float *distances = buffers_.distances[1 - half][at].data(), *dissimilarity = buffers_.dissimilarity.data();
+    const float *shares = buffers_.share.data(), *similarity = buffers_.similarity.data();
     std::array<const float*, 3> colors;
     for (std::size_t c = 0; c < 3; ++c) colors[c] = in_.copies[half][c].row(y + dy) + tile_.x0 + dx;
     auto& by_both = buffers_.sums[0][half][at];
@@ -165,8 +165,8 @@ class TileFilter {
     auto& by_color = buffers_.sums[2][half][at];
     for_columns(width_, [&](int x) HWY_ATTR {
       const V distance = load(distances + x), share = load(shares + x);
-      const V both = hn::Mul(falloff(hn::Add(distance, load(unlikeness + x))), share);
-      const V color = hn::Mul(falloff(distance), share), features = load(alike + x);
+      const V both = hn::Mul(falloff(hn::Add(distance, load(dissimilarity + x))), share);
+      const V color = hn::Mul(falloff(distance), share), features = load(similarity + x);
       for (std::size_t c = 0; c < 3; ++c) {
         const V value = load(colors[c] + x);
         add_to(by_both[c].data() + x, hn::Mul(both, value));
@@ -210,14 +210,14 @@ class TileFilter {
     }
   }
 
-  const NlMeansFrame& in_;
+  const NlMeansPlanes& in_;
   PixelRect tile_;
   int width_;
   TileBuffers& buffers_;
   NlMeansFiltered& out_;
 };
 
-void filter_one(const NlMeansFrame& in, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& out) {
+void filter_one(const NlMeansPlanes& in, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& out) {
   TileFilter(in, tile, buffers, out).run();
 }
 
@@ -229,7 +229,7 @@ namespace fathom::runtime {
 
 HWY_EXPORT(filter_one);
 
-void filter_tile(const NlMeansFrame& in, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& out) {
+void filter_tile(const NlMeansPlanes& in, const PixelRect& tile, TileBuffers& buffers, NlMeansFiltered& out) {
   HWY_DYNAMIC_DISPATCH(filter_one)(in, tile, buffers, out);
 }
 

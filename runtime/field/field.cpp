@@ -34,8 +34,8 @@ std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i,
   return std::nullopt;
 }
 
-// Computes Field::longest_told by trying lengths, each eight times shorter than the one before.
-double longest_told(const compiler::CompiledField& scene, double extent) {
+// Computes Field::max_informative_length by trying lengths, each eight times shorter than the one before.
+double max_informative_length(const compiler::CompiledField& scene, double extent) {
   constexpr int kLengths = 14, kLines = 32;
   // kTold: share of the slope's range that the Lipschitz constant alone allows. kNear: share of the extent.
   constexpr double kTold = 0.8, kNear = 1e-4;
@@ -65,12 +65,12 @@ const compiler::Box& contents_of(const Field& field, const compiler::CompiledFie
 // Returns RegionOptions::room. A ray may go far from the bounded parts of an unbounded scene, and should find cells
 // there. Cells finer than a float resolves would be of no use (kCellMargin in region_splitter.h).
 int room_of(const Field& field, const compiler::CompiledField& compiled) {
-  constexpr int kLeastRoom = 3, kMostRoom = 6;
+  constexpr int kMinRoom = 3, kMaxRoom = 6;
   if (field.bound.finite() || compiled.contents.empty()) return 0;
   const glm::dvec3 extents = compiled.contents.hi - compiled.contents.lo;
   const double edge = std::max({extents.x, extents.y, extents.z});
-  int room = kLeastRoom;
-  while (room < kMostRoom && edge * (1 << room) < 2 * field.far) ++room;
+  int room = kMinRoom;
+  while (room < kMaxRoom && edge * (1 << room) < 2 * field.far) ++room;
   return room;
 }
 
@@ -80,7 +80,7 @@ int room_of(const Field& field, const compiler::CompiledField& compiled) {
 void become_large(Field& field, const FarLevels& levels) {
   field.far_levels = levels;
   field.convex = false;
-  field.longest_told = 0;
+  field.max_informative_length = 0;
 }
 
 }  // namespace
@@ -110,9 +110,9 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   field.surface = &compiled.surface;
   field.bound = compiled.bound.grown(kBoundMargin * extent);
   field.lipschitz = compiled.lipschitz;
-  field.longest_told = longest_told(compiled, extent);
+  field.max_informative_length = max_informative_length(compiled, extent);
   field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
-  field.magnitude = static_cast<float>(compiled.magnitude);
+  field.cancellation = static_cast<float>(compiled.cancellation);
   field.band = static_cast<float>(kBand * extent);
   // Minimum share of convex shapes in the program's cost. Computing the convexity radius pays off when the radius
   // usually exceeds the distance.
@@ -133,7 +133,7 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
                  RegionStore* store) {
   RegionOptions chosen = options;
   chosen.room = room_of(field, compiled);
-  chosen.magnitude = field.magnitude;
+  chosen.cancellation = field.cancellation;
   const compiler::Box& contents = contents_of(field, compiled);
   field.regions =
       store ? store->build(compiled.surface, contents, chosen) : Regions::build(compiled.surface, contents, chosen);

@@ -24,11 +24,11 @@ struct Field {
   double far;  // maximum length of rays, scene units; may be infinite when the bound is finite
   float band;  // distance below which a marcher tries to cross the surface, scene units
   float inv_lipschitz;
-  float magnitude;  // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
+  float cancellation;  // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
   // Maximum length of an interval, scene units, over which along() tells how steep the field is, tried on some lines
   // near surfaces. Interval arithmetic knows nothing of an iterated map until the interval is tiny. Infinite if the
   // compiler proved the field's Lipschitz constant, 0 for a large scene.
-  double longest_told;
+  double max_informative_length;
   // Rounding of distances where no surface is near, for scenes so large that they could have regions. The functions
   // below evaluate to the same bits with regions and without.
   FarLevels far_levels;
@@ -45,11 +45,11 @@ struct Field {
   // below 0 by more than this error: a field that is 0 over a volume is empty, however its values are rounded.
   double rounding(glm::dvec3 p) const {
     const double place = std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    return vm::kFloatError * 0x1p-29 * (place + static_cast<double>(magnitude));
+    return vm::kFloatError * 0x1p-29 * (place + static_cast<double>(cancellation));
   }
 
   // True if the convexity radius is available, which `evaluator` does not compute.
-  bool knows_convex() const { return convex && evaluator == nullptr; }
+  bool has_convexity() const { return convex && evaluator == nullptr; }
 
   // Evaluate distances: of many points in float, or of one or many in double. In a large scene the distances are
   // rounded where no surface is near. In float, regions leave the number of instructions per point in the scratch. In
@@ -86,14 +86,14 @@ inline constexpr double kDefaultFar = 1e4;  // scene units
 void add_regions(Field& field, const compiler::CompiledField& compiled, const RegionOptions& options,
                  RegionStore* store = nullptr);
 
-// d_f, the error bound of a float32 distance d computed at p: 10 * 2^-24 * (max(1, |p|, |d|) + magnitude). The
+// d_f, the error bound of a float32 distance d computed at p: 10 * 2^-24 * (max(1, |p|, |d|) + cancellation). The
 // largest error measured over all primitives has a factor of 9 in place of 10, and most errors stay below 6
 // (tests/compiler/shapes/shapes_test.cpp).
 inline constexpr float kDistanceError = static_cast<float>(vm::kFloatError);
 
 inline float distance_error(const Field& field, float x, float y, float z, float distance) {
   return kDistanceError *
-         (std::max({1.0f, std::abs(x), std::abs(y), std::abs(z), std::abs(distance)}) + field.magnitude);
+         (std::max({1.0f, std::abs(x), std::abs(y), std::abs(z), std::abs(distance)}) + field.cancellation);
 }
 
 }  // namespace fathom::runtime

@@ -15,16 +15,16 @@ using Kind = Regions::Kind;
 
 // A grid replaces at most this many of the top levels. The grid takes at most a kGridShare-th of the memory, and no
 // more bytes than everything else together.
-constexpr int kMostGridLevel = 6;
+constexpr int kMaxGridLevel = 6;
 constexpr std::size_t kGridShare = 8;
 // Bytes per word of the whole program, as a part and as rows of constants.
 constexpr std::size_t kBytesPerWord = 24;
 // Bytes needed for cutting a program (vm/prune/specialise.h), per choice and per instruction of the program,
 // measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
-// kMostWork: maximum number of instructions evaluated by intervals, half a minute's.
+// kMaxWork: maximum number of instructions evaluated by intervals, half a minute's.
 // kEvaluationsPerEnclosure: cost of evaluating an instruction by intervals, in evaluations of the instruction.
-constexpr double kMostWork = 3e7, kEvaluationsPerEnclosure = 4096;
+constexpr double kMaxWork = 3e7, kEvaluationsPerEnclosure = 4096;
 // Leaves may be n times longer than normal if the whole program has at least n times this many choices.
 constexpr std::uint32_t kWorthShorter = 64;
 // Distance outside the root up to which rays are followed, in edges of the root.
@@ -35,9 +35,9 @@ std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::si
   return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
 }
 
-std::size_t most_work(const RegionPlan& plan, const RegionOptions& options) {
+std::size_t max_work(const RegionPlan& plan, const RegionOptions& options) {
   return static_cast<std::size_t>(
-      std::min(kMostWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
+      std::min(kMaxWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, co
     : options_(options),
       plan_(plan),
       program_(program),
-      budget_{options.memory, most_work(plan, options)},
+      budget_{options.memory, max_work(plan, options)},
       regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
   regions_->far_ = plan.far;
@@ -66,7 +66,7 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   choose_grid();
   make_grid();
   count_bytes();
-  regions_->facts_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  regions_->summary_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return regions_;
 }
 
@@ -75,11 +75,11 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 // much as many instructions of the whole program.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
-  for (; longer_ == 1 || longer_ * kWorthShorter <= plan_.choices; longer_ *= 2, budget_.most_work /= 2) {
-    if (plan_.instructions > budget_.most_work) return false;  // needed for the root alone
+  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.max_work /= 2) {
+    if (plan_.instructions > budget_.max_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
-    regions_->pool_ = {}, regions_->skeletons_ = {};
-    regions_->facts_ = {};
+    regions_->pool_ = {}, regions_->templates_ = {};
+    regions_->summary_ = {};
     budget_.bytes = regions_->constants_->bytes();
     budget_.work = 0, budget_.pending_bytes = 0;
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
@@ -100,7 +100,7 @@ int RegionBuilder::threads_for(const std::vector<RegionCell>& cells) const {
 }
 
 void RegionBuilder::split_all(std::vector<RegionCell> cells) {
-  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, longer_};
+  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, choice_factor_};
   while (!cells.empty() && !budget_.is_spent()) {
     std::vector<RegionPiece> pieces(cells.size());
     budget_.pending_bytes = 0;
@@ -110,7 +110,7 @@ void RegionBuilder::split_all(std::vector<RegionCell> cells) {
           splitter.run(cells[i], pieces[i]);
           cells[i].part = {};
         });
-    regions_->facts_.building = std::max<std::size_t>(regions_->facts_.building, budget_.pending_bytes);
+    regions_->summary_.building = std::max<std::size_t>(regions_->summary_.building, budget_.pending_bytes);
     if (budget_.is_spent()) return;
     append_all(cells, pieces);
   }
@@ -139,14 +139,14 @@ std::uint32_t RegionBuilder::append(RegionPiece& piece) {
   Regions& r = *regions_;
   const auto first = static_cast<std::uint32_t>(r.nodes_.size());
   const auto pool = static_cast<std::uint32_t>(r.pool_.size());
-  for (const std::uint32_t at : piece.programs) r.skeletons_.adopt(piece.skeletons, piece.pool.data(), at);
+  for (const std::uint32_t at : piece.programs) r.templates_.renumber(piece.program_templates, piece.pool.data(), at);
   for (Node node : piece.nodes) {
     if (node.kind() == Kind::Inner) node.ref += first;
     if (node.kind() == Kind::Program) node.ref += pool;
     r.nodes_.push_back(node);
   }
   r.pool_.insert(r.pool_.end(), piece.pool.begin(), piece.pool.end());
-  r.facts_.far += piece.facts.far, r.facts_.programs += piece.facts.programs;
+  r.summary_.far += piece.summary.far, r.summary_.programs += piece.summary.programs;
   return first;
 }
 
@@ -166,12 +166,12 @@ void RegionBuilder::close_outside() {
   }
   vm::Specialiser specialiser;
   vm::Workspace workspace;
-  specialiser.look(r.whole_part_, boxes.view(), workspace);
-  specialiser.decide(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.magnitude));
+  specialiser.enclose_choices(r.whole_part_, boxes.view(), workspace);
+  specialiser.resolve(-infinity, r.far_.most, kCellError * (kOutsideSize * r.tree_.size + options_.cancellation));
   for (std::size_t i = 0; i < r.outside_.size(); ++i) {
-    vm::Part part;
-    specialiser.part(i, part);
-    r.outside_[i] = make_node(Kind::Program, r.skeletons_.pack(part, *r.constants_, r.pool_), r.far_.most);
+    vm::PrunedProgram part;
+    specialiser.prune(i, part);
+    r.outside_[i] = make_node(Kind::Program, r.templates_.pack(part, *r.constants_, r.pool_), r.far_.most);
   }
 }
 
@@ -179,7 +179,7 @@ void RegionBuilder::choose_grid() {
   const std::size_t rest = budget_.bytes,
                     most = std::min({options_.memory / kGridShare, rest, options_.memory - rest});
   const auto bytes = [](int level) { return (sizeof(Node) << level) << 2 * level; };
-  int level = std::min(kMostGridLevel, regions_->tree_.levels);
+  int level = std::min(kMaxGridLevel, regions_->tree_.levels);
   while (level > 0 && bytes(level) > most) --level;
   regions_->tree_.grid_level = level;
 }
@@ -215,13 +215,13 @@ void RegionBuilder::make_grid() {
 
 void RegionBuilder::count_bytes() {
   Regions& r = *regions_;
-  r.facts_.levels = r.tree_.levels;
-  r.facts_.skeletons = r.skeletons_.size();
+  r.summary_.levels = r.tree_.levels;
+  r.summary_.program_templates = r.templates_.size();
   r.constants_->forget_rows();
-  r.facts_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.skeletons_.bytes() +
+  r.summary_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.templates_.bytes() +
                    r.constants_->bytes();
   constexpr std::size_t kCache = 1u << 20;
-  r.tree_.beyond_cache = r.facts_.bytes > kCache;
+  r.tree_.beyond_cache = r.summary_.bytes > kCache;
 }
 
 std::shared_ptr<const Regions> Regions::build(const vm::Code& program, const compiler::Box& contents,

@@ -21,11 +21,11 @@ HWY_INLINE Word gather(const std::uint32_t* from, Word index) {
 }
 
 // Moves all points down together, one level at a time, so that the nodes they need are requested from memory early.
-class Descent {
+class TreeDescent {
  public:
-  explicit HWY_INLINE Descent(const RegionTree& tree) : tree_(tree) {}
+  explicit HWY_INLINE TreeDescent(const RegionTree& tree) : tree_(tree) {}
 
-  HWY_INLINE FoundPoints run(const vm::Points& points, std::size_t count, float* distance, const NearPoints& near) {
+  HWY_INLINE LookupResult run(const vm::Points& points, std::size_t count, float* distance, const NearPoints& near) {
     for (std::size_t at = 0; at < count; at += kLanes) begin(points, at);
     std::size_t going = (count + kLanes - 1) / kLanes;
     for (std::size_t i = 0; i < going; ++i) going_[i] = static_cast<std::uint16_t>(i * kLanes);
@@ -110,7 +110,7 @@ class Descent {
   }
 
   template <class T>
-  using PerPoint = std::array<T, kMostPoints>;
+  using PerPoint = std::array<T, kMaxPoints>;
 
   const RegionTree& tree_;
   alignas(64) PerPoint<std::uint32_t> cell_[3];  // in finest cells
@@ -121,9 +121,9 @@ class Descent {
   hn::Mask<Words> outside_ = hn::FirstN(Words(), 0);
 };
 
-FoundPoints find_all(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+LookupResult find_all(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
                      const NearPoints& near) {
-  return Descent(tree).run(points, count, distance, near);
+  return TreeDescent(tree).run(points, count, distance, near);
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE
@@ -134,7 +134,7 @@ namespace fathom::runtime {
 
 HWY_EXPORT(find_all);
 
-FoundPoints find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+LookupResult find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
                          const NearPoints& near) {
   return HWY_DYNAMIC_DISPATCH(find_all)(tree, points, count, distance, near);
 }

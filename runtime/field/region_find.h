@@ -21,7 +21,7 @@ struct RegionTree {
 };
 
 // Maximum number of points per call, as many as a thread advances at once (lane_rows.h).
-inline constexpr std::size_t kMostPoints = 768;
+inline constexpr std::size_t kMaxPoints = 768;
 
 inline constexpr std::uint32_t kOutside = 0xffffffff;      // in place of a leaf's word, for points outside the root
 inline constexpr std::uint32_t kFirstNear = 0x80000000u;   // smaller words are those of inner cells and far leaves
@@ -34,14 +34,14 @@ struct NearPoints {
   float* limit;          // value of the point's leaf
 };
 
-struct FoundPoints {
+struct LookupResult {
   std::size_t near;
   bool outside;  // true if any of the near points is outside the root
 };
 
 // Sets distance[i] to the leaf's value for points in far leaves, and to anything for other points, which are written
 // to `near`. The array of distances is padded to a multiple of 16.
-FoundPoints find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
+LookupResult find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
                          const NearPoints& near);
 
 }  // namespace fathom::runtime

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vm/prune/expression.h"
-#include "vm/prune/part.h"
+#include "vm/prune/def_use_graph.h"
+#include "vm/prune/pruned_program.h"
 
 namespace fathom::runtime {
 namespace {
 
 // Minimum cost, in multiply-adds, of a program that is faster with regions (bench/culling.cpp).
-constexpr std::uint64_t kLeastCost = 2500;
-// kExtraLevels: levels below the one with as many cells as the program has choices. kMostLevels: maximum number of
+constexpr std::uint64_t kMinCost = 2500;
+// kExtraLevels: levels below the one with as many cells as the program has choices. kMaxLevels: maximum number of
 // levels, without RegionPlan::room.
-constexpr int kExtraLevels = 3, kMostLevels = 10;
+constexpr int kExtraLevels = 3, kMaxLevels = 10;
 // FarLevels::first, in edges of a cell: the edge is the largest power of two for which the volume of the contents
 // holds at least as many cells as there are choices. The edge is computed by products alone, because it decides bits
 // of images.
@@ -23,7 +23,7 @@ constexpr double kFlattest = 1.0 / 1024;
 // FarLevels::most, the maximum distance outside the contents, in edges of the root.
 constexpr float kHighest = 0.1f;
 
-// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/skeleton.h
+// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/template.h
 // relies on that.
 bool is_unfolded(const vm::Code& code) {
   for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {
@@ -67,8 +67,8 @@ std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::
   if (contents.empty() || !contents.finite()) return std::nullopt;
   const glm::dvec3 middle = (contents.lo + contents.hi) / 2.0, extents = contents.hi - contents.lo;
   const double edge = std::max({extents.x, extents.y, extents.z});
-  if (!(edge > 0) || (!always && cost_of(program) < kLeastCost)) return std::nullopt;
-  vm::Expression expression;
+  if (!(edge > 0) || (!always && cost_of(program) < kMinCost)) return std::nullopt;
+  vm::DefUseGraph expression;
   if (!expression.read(program) || is_unfolded(program)) return std::nullopt;
   RegionPlan plan{};
   plan.choices = std::max<std::size_t>(1, expression.choices().size());
@@ -80,7 +80,7 @@ std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::
   }
   const int levels =
       kExtraLevels + static_cast<int>(std::ceil(std::log2(std::cbrt(static_cast<double>(plan.choices)))));
-  plan.levels = std::min(levels, kMostLevels) + room;
+  plan.levels = std::min(levels, kMaxLevels) + room;
   plan.far = far_levels(contents, plan);
   if (!(plan.far.first > 0)) return std::nullopt;
   return plan;

@@ -9,10 +9,10 @@ namespace {
 
 // Maximum number of choices in the program of a leaf of normal length.
 constexpr std::uint32_t kLeafChoices = 4;
-// A cell becomes a leaf after more than kMostIdle levels in a row at which its part kept at least this share of its
+// A cell becomes a leaf after more than kMaxIdle levels in a row at which its part kept at least this share of its
 // length.
 constexpr double kShorterPart = 0.9;
-constexpr int kMostIdle = 2;
+constexpr int kMaxIdle = 2;
 // Cells down to this level are divided among the threads.
 constexpr int kShared = 2;
 
@@ -22,16 +22,16 @@ RegionSplitter::RegionSplitter(const SplitRules& rules, RegionBudget& budget)
     : rules_(rules),
       budget_(budget),
       levels_(rules.tree.levels),
-      leaf_choices_(rules.longer * kLeafChoices),
+      leaf_choices_(rules.choice_factor * kLeafChoices),
       parts_(static_cast<std::size_t>(levels_) + 1) {}
 
 void RegionSplitter::run(const RegionCell& cell, RegionPiece& piece) {
   piece_ = &piece;
   piece.nodes.resize(8);
-  split(cell.part, cell.at, cell.level, cell.limit, cell.idle, 0);
+  split(cell.part, cell.at, cell.level, cell.limit, cell.unshortened, 0);
 }
 
-void RegionSplitter::split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far,
+void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels,
                            std::uint32_t first) {
   budget_.work += part.sources.size();
   if (budget_.is_spent()) return;
@@ -42,7 +42,7 @@ void RegionSplitter::split(const vm::Part& part, const Place& at, int level, flo
   const int below = level + 1;
   const std::size_t bytes_before = bytes_of(*piece_);
   const BoxArrays boxes = children_of(at, below);
-  specialiser_.look(part, boxes.view(), workspace_);
+  specialiser_.enclose_choices(part, boxes.view(), workspace_);
   const Limits limits = limits_of(boxes, limit);
   Children done = make_far(limits, first);
   Parts& parts = parts_[static_cast<std::size_t>(below)];
@@ -51,24 +51,24 @@ void RegionSplitter::split(const vm::Part& part, const Place& at, int level, flo
   for (std::uint32_t i = 0; i < 8; ++i) {
     if (done[i]) continue;
     const double shorter = static_cast<double>(parts[i].words.size()) / static_cast<double>(part.words.size());
-    const Place cell = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2)};
-    go_on(parts[i], shorter, cell, below, limits[i], idle_so_far, first + i);
+    const CellIndex cell = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2)};
+    place_child(parts[i], shorter, cell, below, limits[i], unshortened_levels, first + i);
   }
 }
 
-void RegionSplitter::go_on(vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
+void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
                            std::uint32_t node) {
-  const int idle = shorter < kShorterPart || level <= rules_.options.room ? 0 : idle_so_far + 1;
-  if (idle > kMostIdle) return make_leaf(child, limit, node);
+  const int unshortened = shorter < kShorterPart || level <= rules_.options.room ? 0 : unshortened_levels + 1;
+  if (unshortened > kMaxIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {
     budget_.pending_bytes += child.bytes();
-    piece_->pending.push_back({at, level, limit, idle, std::move(child), node});
+    piece_->pending.push_back({at, level, limit, unshortened, std::move(child), node});
     return;
   }
   const auto grandchildren = static_cast<std::uint32_t>(piece_->nodes.size());
   piece_->nodes.resize(grandchildren + 8);
   piece_->nodes[node] = make_node(Kind::Inner, grandchildren, 0);
-  split(child, at, level, limit, idle, grandchildren);
+  split(child, at, level, limit, unshortened, grandchildren);
 }
 
 RegionSplitter::Limits RegionSplitter::limits_of(const BoxArrays& boxes, float limit) const {
@@ -88,7 +88,7 @@ RegionSplitter::Children RegionSplitter::make_far(const Limits& limits, std::uin
     far[i] = specialiser_.lo(i) * (1 - kCellError) - error_ >= limits[i];
     if (!far[i]) continue;
     piece_->nodes[first + i] = make_node(Kind::Far, 0, limits[i]);
-    ++piece_->facts.far;
+    ++piece_->summary.far;
   }
   return far;
 }
@@ -97,18 +97,18 @@ void RegionSplitter::make_parts(const Limits& limits, int level, std::uint32_t f
   Children seen = done;
   for (std::size_t begin = 0; begin < seen.size(); ++begin) {
     if (seen[begin]) continue;
-    specialiser_.decide(-std::numeric_limits<float>::infinity(), limits[begin], error_);
+    specialiser_.resolve(-std::numeric_limits<float>::infinity(), limits[begin], error_);
     for (std::size_t i = begin; i < seen.size(); ++i) {
       if (seen[i] || limits[i] != limits[begin]) continue;
       seen[i] = true;
-      specialiser_.part(i, parts[i]);
+      specialiser_.prune(i, parts[i]);
       done[i] = specialiser_.choices_left(i) <= leaf_choices_ || level >= levels_;
       if (done[i]) make_leaf(parts[i], limits[i], first + static_cast<std::uint32_t>(i));
     }
   }
 }
 
-BoxArrays RegionSplitter::children_of(const Place& at, int level) {
+BoxArrays RegionSplitter::children_of(const CellIndex& at, int level) {
   BoxArrays boxes;
   const double size = static_cast<double>(rules_.tree.size), edge = size / (1u << level), margin = size * kCellMargin;
   float largest = 1;
@@ -119,19 +119,19 @@ BoxArrays RegionSplitter::children_of(const Place& at, int level) {
       largest = std::max({largest, -boxes.lo[axis][i], boxes.hi[axis][i]});
     }
   }
-  error_ = kCellError * (largest + rules_.options.magnitude);
+  error_ = kCellError * (largest + rules_.options.cancellation);
   return boxes;
 }
 
 std::size_t RegionSplitter::bytes_of(const RegionPiece& piece) {
   return (piece.pool.size() + piece.programs.size() + piece.slots.size()) * sizeof(std::uint32_t) +
-         piece.skeletons.bytes();
+         piece.program_templates.bytes();
 }
 
-void RegionSplitter::make_leaf(const vm::Part& part, float limit, std::uint32_t node) {
-  const std::uint32_t at = piece_->skeletons.pack(part, rules_.constants, piece_->pool);
+void RegionSplitter::make_leaf(const vm::PrunedProgram& part, float limit, std::uint32_t node) {
+  const std::uint32_t at = piece_->program_templates.pack(part, rules_.constants, piece_->pool);
   piece_->nodes[node] = make_node(Kind::Program, intern(at), limit);
-  ++piece_->facts.programs;
+  ++piece_->summary.programs;
 }
 
 std::uint32_t RegionSplitter::intern(std::uint32_t start) {

@@ -12,7 +12,7 @@
 #include "runtime/field/region_budget.h"
 #include "runtime/field/region_find.h"
 #include "runtime/field/regions.h"
-#include "vm/prune/skeleton.h"
+#include "vm/prune/program_template.h"
 #include "vm/prune/specialise.h"
 
 namespace fathom::runtime {
@@ -39,20 +39,20 @@ struct RegionCell {
   std::array<std::uint32_t, 3> at;  // position, in cells of its level
   int level;
   float limit;
-  int idle;  // number of levels in a row at which its part did not get shorter
-  vm::Part part;
+  int unshortened;  // number of levels in a row at which its part did not get shorter
+  vm::PrunedProgram part;
   std::uint32_t node;  // index of its node
 };
 
 // The result of one thread for a cell. nodes[0..8) are the cell's children, and indices are those of the piece.
 struct RegionPiece {
   std::vector<Regions::Node> nodes;
-  vm::Skeletons skeletons;
+  vm::ProgramTemplates program_templates;
   std::vector<std::uint32_t> pool;
   std::vector<std::uint32_t> programs;  // where the programs begin in the pool, in ascending order
   std::vector<std::uint32_t> slots;     // hash table of the programs: index + 1, or 0
   std::vector<RegionCell> pending;      // left for other threads
-  Regions::Facts facts;
+  Regions::Summary summary;
 };
 
 // The rules for splitting, the same for all cells.
@@ -61,7 +61,7 @@ struct SplitRules {
   const RegionTree& tree;  // only its root and the number of its levels are used
   const FarLevels& far;
   const vm::Constants& constants;
-  std::uint32_t longer;  // factor on the choices that a leaf may have
+  std::uint32_t choice_factor;  // factor on the choices that a leaf may have
 };
 
 // Splits cells, on one thread.
@@ -75,15 +75,15 @@ class RegionSplitter {
  private:
   using Node = Regions::Node;
   using Kind = Regions::Kind;
-  using Place = std::array<std::uint32_t, 3>;  // position of a cell, in cells of its level
+  using CellIndex = std::array<std::uint32_t, 3>;  // position of a cell, in cells of its level
   using Children = std::array<bool, 8>;        // true for a child that is already a leaf
-  using Parts = std::array<vm::Part, 8>;
+  using Parts = std::array<vm::PrunedProgram, 8>;
   using Limits = std::array<float, 8>;
 
   // Makes the eight children of a cell, at nodes[first] and on, and splits the children that are not leaves.
-  void split(const vm::Part& part, const Place& at, int level, float limit, int idle_so_far, std::uint32_t first);
+  void split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels, std::uint32_t first);
   // Makes the child a leaf, leaves it for other threads, or splits it.
-  void go_on(vm::Part& child, double shorter, const Place& at, int level, float limit, int idle_so_far,
+  void place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
              std::uint32_t node);
   // Returns the limit up to which each child's values matter.
   Limits limits_of(const BoxArrays& boxes, float limit) const;
@@ -92,10 +92,10 @@ class RegionSplitter {
   // Makes the parts of the other children, and leaves of the children whose parts are short enough.
   void make_parts(const Limits& limits, int level, std::uint32_t first, Children& done, Parts& parts);
   // Returns the boxes of a cell's children. Also sets error_.
-  BoxArrays children_of(const Place& at, int level);
+  BoxArrays children_of(const CellIndex& at, int level);
   // Returns the bytes of a piece's leaves, without the nodes.
   static std::size_t bytes_of(const RegionPiece& piece);
-  void make_leaf(const vm::Part& part, float limit, std::uint32_t node);
+  void make_leaf(const vm::PrunedProgram& part, float limit, std::uint32_t node);
   // Returns the place of the program packed last, or of an equal program before it, which then replaces it.
   std::uint32_t intern(std::uint32_t start);
   std::span<const std::uint32_t> program(std::size_t number) const;

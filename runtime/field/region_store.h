@@ -20,10 +20,10 @@ class RegionStore {
                                        const RegionOptions& options);
 
   // True if the store already held `regions` when build() last returned them.
-  bool kept(const Regions& regions) const;
+  bool reused(const Regions& regions) const;
 
   // Drops the regions that build() has not returned since the last call.
-  void forget_unused();
+  void drop_unused();
 
  private:
   struct Entry {
@@ -32,7 +32,7 @@ class RegionStore {
     RegionOptions options;
     // Null if the scene has no regions, which may have taken as long to find out.
     std::shared_ptr<const Regions> regions;
-    bool used = true, kept = false;
+    bool used = true, reused = false;
   };
 
   std::list<std::shared_ptr<Entry>> entries_;

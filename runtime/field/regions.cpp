@@ -8,7 +8,7 @@
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
-Regions::Found Regions::find(float x, float y, float z) const {
+Regions::RegionLookup Regions::find(float x, float y, float z) const {
   const float p[3] = {x, y, z};
   std::array<std::uint32_t, 3> cell;
   const float most = static_cast<float>(1u << tree_.levels);
@@ -34,43 +34,43 @@ Regions::Found Regions::find(float x, float y, float z) const {
 void Regions::evaluate(vm::Points points, std::size_t count, float* distance, RegionScratch& s,
                        vm::Workspace& workspace) const {
   static_assert(static_cast<std::uint32_t>(Kind::Program) << 30 == kFirstNear);
-  CHECK(count <= kMostPoints, "a batch of points is too large");
-  FoundPoints found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
+  CHECK(count <= kMaxPoints, "a batch of points is too large");
+  LookupResult found = find_regions(tree_, points, count, distance, {s.point.data(), s.ref.data(), s.limit.data()});
   std::fill_n(s.instructions.data(), count, 0);
   s.counters.far += count - found.near;
   if (found.outside) [[unlikely]]
-    found.near = settle_outside(points, found.near, distance, s, workspace);
+    found.near = evaluate_outside(points, found.near, distance, s, workspace);
   s.counters.specialised += found.near;
   sort(points, found.near, s);
-  for (const std::uint32_t number : s.met) {
-    const vm::Skeleton& skeleton = skeletons_[number];
-    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
-    for (const vm::SkeletonJob& job : jobs) s.instructions[job.point] = skeleton.instructions;
-    vm::evaluate_skeleton(skeleton, *constants_, pool_.data(), jobs, distance, workspace);
+  for (const std::uint32_t number : s.active) {
+    const vm::ProgramTemplate& program_template = templates_[number];
+    std::vector<vm::TemplateJob>& jobs = s.jobs[number];
+    for (const vm::TemplateJob& job : jobs) s.instructions[job.point] = program_template.instructions;
+    vm::evaluate_template(program_template, *constants_, pool_.data(), jobs, distance, workspace);
     jobs.clear();
   }
-  s.met.clear();
+  s.active.clear();
   far_.apply(points, count, distance);
 }
 
-// Sorts the first `near` points by the skeletons of their programs.
+// Sorts the first `near` points by the templates of their programs.
 void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const {
-  s.jobs.resize(skeletons_.size());
+  s.jobs.resize(templates_.size());
   if (tree_.beyond_cache) {
     for (std::size_t j = 0; j < near; ++j) __builtin_prefetch(pool_.data() + Node{0, s.ref[j]}.payload());
   }
   for (std::size_t j = 0; j < near; ++j) {
     const std::uint32_t i = s.point[j], at = Node{0, s.ref[j]}.payload(), number = pool_[at];
-    std::vector<vm::SkeletonJob>& jobs = s.jobs[number];
-    if (jobs.empty()) s.met.push_back(number);
+    std::vector<vm::TemplateJob>& jobs = s.jobs[number];
+    if (jobs.empty()) s.active.push_back(number);
     jobs.push_back({points.x[i], points.y[i], points.z[i], s.limit[j], at, i});
-    if (tree_.beyond_cache) skeletons_.prefetch(*constants_, pool_.data(), at);
+    if (tree_.beyond_cache) templates_.prefetch(*constants_, pool_.data(), at);
   }
 }
 
 // Finds the leaves of the points outside the root. Points whose leaf needs the whole program, as outside a bounded
 // scene's root, are evaluated at once. Returns the number of points left.
-std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
+std::size_t Regions::evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
                                     vm::Workspace& workspace) const {
   std::size_t left = 0;
   for (std::size_t j = 0; j < near; ++j) {
@@ -78,7 +78,7 @@ std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* 
     std::uint32_t ref = s.ref[j];
     float limit = s.limit[j];
     if (ref == kOutside) {
-      const Found found = find(points.x[i], points.y[i], points.z[i]);
+      const RegionLookup found = find(points.x[i], points.y[i], points.z[i]);
       ref = found.node.ref, limit = found.node.value;
     }
     if (Node{0, ref}.payload() == kWhole) {
@@ -92,17 +92,17 @@ std::size_t Regions::settle_outside(vm::Points points, std::size_t near, float* 
   return left;
 }
 
-void Regions::part_of(const Node& node, vm::Part& part) const {
+void Regions::part_of(const Node& node, vm::PrunedProgram& part) const {
   part = {};
   if (node.kind() != Kind::Program) return;
   if (node.payload() == kWhole) {
     part = whole_part_;
   } else {
-    skeletons_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
+    templates_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
   }
 }
 
-const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
+const vm::PrunedProgram& Regions::part_of(const Node& node, RealScratch& scratch) const {
   if (node.kind() == Kind::Program && node.payload() == kWhole) return whole_part_;
   if (scratch.of != this || scratch.ref != node.ref) {
     part_of(node, scratch.part);
@@ -113,10 +113,10 @@ const vm::Part& Regions::part_of(const Node& node, RealScratch& scratch) const {
 
 double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& instructions) const {
   const glm::vec3 f(p);
-  const Found found = find(f.x, f.y, f.z);
+  const RegionLookup found = find(f.x, f.y, f.z);
   const double limit = static_cast<double>(found.node.value);
   if (found.node.kind() == Kind::Far) return far_(limit, f.x, f.y, f.z);
-  const vm::Part& part = part_of(found.node, scratch);
+  const vm::PrunedProgram& part = part_of(found.node, scratch);
   instructions += part.sources.size();
   return far_(std::min(vm::evaluate_distance(part, p, scratch.workspace), limit), f.x, f.y, f.z);
 }
@@ -124,7 +124,7 @@ double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& inst
 Regions::Region Regions::region(glm::dvec3 p) const {
   static constexpr const char* kNames[] = {"inner", "far", "program"};
   const glm::vec3 f(p);
-  const Found found = find(f.x, f.y, f.z);
+  const RegionLookup found = find(f.x, f.y, f.z);
   Region region{
       {glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(std::numeric_limits<double>::infinity())},
       kNames[static_cast<std::size_t>(found.node.kind())],
@@ -145,8 +145,8 @@ Regions::Region Regions::region(glm::dvec3 p) const {
 
 void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out,
                                vm::Workspace& workspace) const {
-  CHECK(count <= kMostHits, "a batch of hits is too large");
-  std::array<std::pair<std::uint32_t, std::uint32_t>, kMostHits> leaves;  // {word of the leaf, point}
+  CHECK(count <= kMaxHits, "a batch of hits is too large");
+  std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxHits> leaves;  // {word of the leaf, point}
   for (std::uint32_t i = 0; i < count; ++i) {
     leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
@@ -163,13 +163,13 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
 // surface at all, is evaluated by the whole program.
 void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
-  alignas(64) std::array<float, kMostHits> x, y, z, d, gx, gy, gz, convex;
-  alignas(64) std::array<std::uint32_t, kMostHits> surface;
+  alignas(64) std::array<float, kMaxHits> x, y, z, d, gx, gy, gz, convex;
+  alignas(64) std::array<std::uint32_t, kMaxHits> surface;
   for (std::size_t i = 0; i < same.size(); ++i) {
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];
   }
-  vm::Part part;
+  vm::PrunedProgram part;
   part_of({0, same[0].first}, part);
   vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), {x.data(), y.data(), z.data()}, same.size(),
                        {d.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()}, workspace);
@@ -184,7 +184,7 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
 vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspace) const {
   const glm::vec3 f(p);
   const Node node = find(f.x, f.y, f.z).node;
-  vm::Part part;
+  vm::PrunedProgram part;
   part_of(node, part);
   return vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), p, workspace);
 }
@@ -192,7 +192,7 @@ vm::SurfaceValue Regions::evaluate_surface(glm::dvec3 p, vm::Workspace& workspac
 // Returns the program of the point's leaf, or the whole program if the leaf has none.
 vm::Code Regions::code_at(glm::dvec3 p, RealScratch& scratch) const {
   const glm::vec3 f(p);
-  const vm::Part& part = part_of(find(f.x, f.y, f.z).node, scratch);
+  const vm::PrunedProgram& part = part_of(find(f.x, f.y, f.z).node, scratch);
   return part.words.empty() ? whole_ : vm::Code(part);
 }
 

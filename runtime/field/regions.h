@@ -9,7 +9,7 @@
 //     program   the part of the program that matters in the cell, up to the highest value there
 //               (vm/prune/specialise.h)
 //
-// Points in cells whose programs differ only in their constants are evaluated together (vm/prune/skeleton.h).
+// Points in cells whose programs differ only in their constants are evaluated together (vm/prune/template.h).
 //
 // A step may leave the cell, and the next point then finds its own cell. The builder splits a cell until its part is
 // short, or until the cell is as small as the scene's number of choices warrants. A grid replaces the top levels.
@@ -32,7 +32,7 @@
 #include "compiler/geometry/box.h"
 #include "runtime/field/far_levels.h"
 #include "runtime/field/region_find.h"
-#include "vm/prune/skeleton.h"
+#include "vm/prune/program_template.h"
 
 namespace fathom::runtime {
 
@@ -45,7 +45,7 @@ struct RegionOptions {
   double evaluations = std::numeric_limits<double>::infinity();
   bool always = false;  // build regions of scenes that are as fast without, too
   int room = 0;         // the root is 2^room times as long as the scene's bounded parts
-  float magnitude = 0;  // size of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
+  float cancellation = 0;  // size of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   // Called before each cell is split, by any thread. Once the function returns true, there will be no regions.
   std::function<bool()> interrupted = {};
 };
@@ -58,11 +58,11 @@ struct RegionCounters {
 // Memory that a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
-  using PerPoint = std::array<T, kMostPoints + 16>;  // whole registers are read and written
+  using PerPoint = std::array<T, kMaxPoints + 16>;  // whole registers are read and written
   PerPoint<std::uint32_t> point, ref;                // of the points in no far leaf: index, word of the leaf
   PerPoint<float> limit;
-  std::vector<std::vector<vm::SkeletonJob>> jobs;  // [skeleton]
-  std::vector<std::uint32_t> met;                  // the skeletons that have jobs
+  std::vector<std::vector<vm::TemplateJob>> jobs;  // [template]
+  std::vector<std::uint32_t> active;                  // the templates that have jobs
   PerPoint<std::uint32_t> instructions;            // [point] number evaluated for the point
   RegionCounters counters;
 };
@@ -75,7 +75,7 @@ struct RealScratch {
   // The part evaluated last. The next point often needs the same part, which is then unpacked only once.
   const Regions* of = nullptr;
   std::uint32_t ref = 0;  // word of the part's leaf
-  vm::Part part;
+  vm::PrunedProgram part;
 };
 
 class Regions {
@@ -101,28 +101,28 @@ class Regions {
     compiler::Box cell;  // may be unbounded
     const char* kind;
     double limit;   // for a far leaf the value to which distances round
-    vm::Part part;  // empty for a far leaf
+    vm::PrunedProgram part;  // empty for a far leaf
   };
   Region region(glm::dvec3 point) const;
 
-  // Compute gradients and surfaces of points near the surface, equal to the whole program's. At most kMostHits points
+  // Compute gradients and surfaces of points near the surface, equal to the whole program's. At most kMaxHits points
   // per call.
-  static constexpr std::size_t kMostHits = 256;
+  static constexpr std::size_t kMaxHits = 256;
   void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
   vm::SurfaceValue evaluate_surface(glm::dvec3 point, vm::Workspace& workspace) const;
   vm::SurfaceShares evaluate_shares(glm::dvec3 point, RealScratch& scratch) const;
   vm::SurfaceShares evaluate_placed_shares(glm::dvec3 point, RealScratch& scratch) const;
   vm::SurfacePlace evaluate_place(glm::dvec3 point, RealScratch& scratch) const;
 
-  struct Facts {
+  struct Summary {
     std::size_t far = 0, programs = 0;  // numbers of leaves
-    std::size_t skeletons = 0;
+    std::size_t program_templates = 0;
     std::size_t bytes = 0;
     std::size_t building = 0;  // maximum size of the parts of cells still to be split, bytes
     int levels = 0;
     double seconds = 0;  // time to build
   };
-  const Facts& facts() const { return facts_; }
+  const Summary& summary() const { return summary_; }
 
   enum class Kind : std::uint32_t { Inner, Far, Program };
   struct Node {
@@ -138,31 +138,31 @@ class Regions {
 
  private:
   friend class RegionBuilder;
-  struct Found {
+  struct RegionLookup {
     Node node;
     int level;                          // the cell's level; -1 outside the root
     std::array<std::uint32_t, 3> cell;  // position in finest cells; outside the root, the face's index comes first
   };
-  Found find(float x, float y, float z) const;
+  RegionLookup find(float x, float y, float z) const;
   void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
-  std::size_t settle_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
+  std::size_t evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
                              vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
-  void part_of(const Node& node, vm::Part& part) const;
+  void part_of(const Node& node, vm::PrunedProgram& part) const;
   vm::Code code_at(glm::dvec3 point, RealScratch& scratch) const;
-  const vm::Part& part_of(const Node& node, RealScratch& scratch) const;
+  const vm::PrunedProgram& part_of(const Node& node, RealScratch& scratch) const;
 
   vm::Code whole_;
-  vm::Part whole_part_;
+  vm::PrunedProgram whole_part_;
   RegionTree tree_{};
   FarLevels far_;
   std::vector<Node> nodes_;        // the nodes of the grid's cells come first
   std::array<Node, 6> outside_{};  // below and above the root on each axis, x before y before z
   std::optional<vm::Constants> constants_;
-  vm::Skeletons skeletons_;
+  vm::ProgramTemplates templates_;
   std::vector<std::uint32_t> pool_;  // programs of the leaves
-  Facts facts_;
+  Summary summary_;
 };
 
 }  // namespace fathom::runtime

@@ -14,7 +14,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr double kMinShare = 0.5, kMaxShare = 4;  // limits of a share, relative to the average
-constexpr std::uint32_t kFirstJudgement = 16;     // samples per pixel
+constexpr std::uint32_t kFirstTest = 16;     // samples per pixel
 
 std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(spp / 2); }
 
@@ -73,53 +73,53 @@ std::vector<double> smoothed(const std::vector<double>& values, int columns) {
   return result;
 }
 
-// Claim of the pixels of one half of a tile: their number, its weight, and its min and max samples
+// Demand of the pixels of one half of a tile: their number, its weight, and its min and max samples
 // per pixel.
-struct Claim {
+struct SampleDemand {
   double pixels, weight, min, max;
 };
 
 // Returns the factor by which the clamped weights use up the budget.
-double fitting_factor(const std::vector<Claim>& claims, double budget) {
+double fitting_factor(const std::vector<SampleDemand>& demands, double budget) {
   double low = 0, high = 0;
-  for (const Claim& claim : claims) high = std::max(high, claim.max / claim.weight);
+  for (const SampleDemand& demand : demands) high = std::max(high, demand.max / demand.weight);
   for (int i = 0; i < 60; ++i) {
     const double factor = (low + high) / 2;
     double sum = 0;
-    for (const Claim& claim : claims) sum += claim.pixels * std::clamp(factor * claim.weight, claim.min, claim.max);
+    for (const SampleDemand& demand : demands) sum += demand.pixels * std::clamp(factor * demand.weight, demand.min, demand.max);
     (sum < budget ? low : high) = factor;
   }
   return low;
 }
 
-// Computes the shares of each half, which the other half decides.
-class Shares {
+// Computes the number of samples of each half, which the other half decides.
+class SampleAllocation {
  public:
-  Shares(const Film& film, int spp, double threshold, const AdaptiveState& state)
+  SampleAllocation(const Film& film, int spp, double threshold, const AdaptiveState& state)
       : film_(film), tiles_(film.area(), kAdaptiveTile), average_(spp), threshold_(threshold), state_(state) {}
 
   // Returns [tile] the number of samples per pixel of `half`.
   std::vector<std::uint32_t> of(std::size_t half) const {
     const std::vector<double> weights = weights_by(1 - half);
     double budget = 0;
-    std::vector<Claim> claims;
+    std::vector<SampleDemand> demands;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      claims.push_back(claim(i, half, weights[i]));
-      budget += average_ * claims.back().pixels;
-      if (state_.tiles[i].ends[half] != 0) budget -= claims.back().pixels * claims.back().max;
+      demands.push_back(demand(i, half, weights[i]));
+      budget += average_ * demands.back().pixels;
+      if (state_.tiles[i].ends[half] != 0) budget -= demands.back().pixels * demands.back().max;
     }
-    std::vector<Claim> open;
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-      if (state_.tiles[i].ends[half] == 0) open.push_back(claims[i]);
+    std::vector<SampleDemand> open;
+    for (std::size_t i = 0; i < demands.size(); ++i) {
+      if (state_.tiles[i].ends[half] == 0) open.push_back(demands[i]);
     }
     const double factor = fitting_factor(open, budget);
     std::vector<std::uint32_t> counts;
     double carried = 0;  // samples left over by rounding down
-    for (const Claim& claim : claims) {
-      const double share = std::clamp(factor * claim.weight, claim.min, claim.max);
+    for (const SampleDemand& demand : demands) {
+      const double share = std::clamp(factor * demand.weight, demand.min, demand.max);
       constexpr double kRounding = 1e-6;  // error of the factor's bisection
-      const double count = std::min(claim.max, std::floor(share + carried / std::max(1.0, claim.pixels) + kRounding));
-      carried += claim.pixels * (share - count);
+      const double count = std::min(demand.max, std::floor(share + carried / std::max(1.0, demand.pixels) + kRounding));
+      carried += demand.pixels * (share - count);
       counts.push_back(static_cast<std::uint32_t>(count));
     }
     return counts;
@@ -128,23 +128,23 @@ class Shares {
  private:
   PixelRect tile(std::size_t i) const { return tiles_.at(static_cast<std::int64_t>(i)); }
 
-  // Returns [tile] the square root of the deviation that half `judge` measures, always above 0.
-  std::vector<double> weights_by(std::size_t judge) const {
+  // Returns [tile] the square root of the deviation that half `measuring_half` measures, always above 0.
+  std::vector<double> weights_by(std::size_t measuring_half) const {
     std::vector<double> deviations;
     for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
-      deviations.push_back(deviation_of(film_, tile(i), judge));
+      deviations.push_back(deviation_of(film_, tile(i), measuring_half));
     }
     std::vector<double> weights = smoothed(deviations, tiles_.columns());
-    const double loudest = *std::max_element(weights.begin(), weights.end());
-    for (double& weight : weights) weight = loudest > 0 ? std::sqrt(std::max(weight, 1e-6 * loudest)) : 1;
+    const double max_weight = *std::max_element(weights.begin(), weights.end());
+    for (double& weight : weights) weight = max_weight > 0 ? std::sqrt(std::max(weight, 1e-6 * max_weight)) : 1;
     return weights;
   }
 
-  Claim claim(std::size_t i, std::size_t half, double weight) const {
+  SampleDemand demand(std::size_t i, std::size_t half, double weight) const {
     const std::uint32_t decided = state_.tiles[i].ends[half];
     const double pixels = pixels_of(tile(i), half);
     if (decided != 0) return {pixels, weight, static_cast<double>(decided), static_cast<double>(decided)};
-    const double taken = state_.judged;
+    const double taken = state_.tested_spp;
     double max = kMaxShare * average_;
     if (threshold_ > 0) {
       const double noise = noise_of(film_, tile(i), 1 - half) / threshold_;
@@ -164,11 +164,11 @@ class Shares {
 
 std::size_t adaptive_stages(double threshold) { return threshold > 0 ? 2 : 1; }
 
-std::uint32_t next_round(std::uint32_t judged, int spp, double threshold) {
+std::uint32_t next_round(std::uint32_t tested_spp, int spp, double threshold) {
   CHECK(spp >= kMinAdaptiveSpp, "too few samples to share out");
   const std::uint32_t last = pilot_samples(spp);
-  if (judged >= last) return 0;
-  return threshold > 0 ? std::min(last, judged == 0 ? kFirstJudgement : 2 * judged) : last;
+  if (tested_spp >= last) return 0;
+  return threshold > 0 ? std::min(last, tested_spp == 0 ? kFirstTest : 2 * tested_spp) : last;
 }
 
 double noise_of(const Film& film, PixelRect tile, std::size_t half) {
@@ -192,24 +192,24 @@ double image_noise(const Film& film, PixelRect tile) {
   return std::sqrt(sum / static_cast<double>(tile.pixels()));
 }
 
-void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state) {
+void test_convergence(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state) {
   const Tiles tiles(film.area(), kAdaptiveTile);
   for (std::size_t i = 0; i < state.tiles.size() && threshold > 0; ++i) {
     AdaptiveTile& tile = state.tiles[i];
     if (!tile.open()) continue;
     const PixelRect pixels = tiles.at(static_cast<std::int64_t>(i));
-    const std::array<bool, 2> quiet = {noise_of(film, pixels, 1) <= threshold,
+    const std::array<bool, 2> converged = {noise_of(film, pixels, 1) <= threshold,
                                        noise_of(film, pixels, 0) <= threshold};
     for (std::size_t half = 0; half < 2; ++half) {
-      if (tile.ends[half] == 0 && quiet[half]) tile.ends[half] = end;
+      if (tile.ends[half] == 0 && converged[half]) tile.ends[half] = end;
     }
   }
-  state.judged = end;
+  state.tested_spp = end;
 }
 
-void assign_shares(const Film& film, int spp, double threshold, AdaptiveState& state) {
-  const Shares shares(film, spp, threshold, state);
-  const std::array<std::vector<std::uint32_t>, 2> counts = {shares.of(0), shares.of(1)};
+void allocate_samples(const Film& film, int spp, double threshold, AdaptiveState& state) {
+  const SampleAllocation allocation(film, spp, threshold, state);
+  const std::array<std::vector<std::uint32_t>, 2> counts = {allocation.of(0), allocation.of(1)};
   for (std::size_t i = 0; i < state.tiles.size(); ++i) {
     for (std::size_t half = 0; half < 2; ++half) state.tiles[i].ends[half] = counts[half][i];
   }

@@ -11,9 +11,9 @@
 //     for (end = next_round(0, ...); end != 0; end = next_round(end, ...)) {
 //       take the samples up to `end` of the pixels of open tiles: for stage 0 of the film, or for stage 1 if the
 //       pixel's number of samples is decided
-//       judge(film, end, threshold, state);
+//       test_convergence(film, end, threshold, state);
 //     }
-//     assign_shares(film, spp, threshold, state);
+//     allocate_samples(film, spp, threshold, state);
 //     take the samples up to AdaptiveTile::ends
 //
 // Pixels whose number is decided before that of the other half of their tile take further samples only to decide for
@@ -53,7 +53,7 @@ struct AdaptiveTile {
 };
 
 struct AdaptiveState {
-  std::uint32_t judged = 0;         // number of samples per pixel at the last judgement
+  std::uint32_t tested_spp = 0;         // number of samples per pixel at the last convergence test
   std::vector<AdaptiveTile> tiles;  // [tile of Tiles(area, kAdaptiveTile)]; empty: the same number everywhere
 
   bool used() const { return !tiles.empty(); }
@@ -63,9 +63,9 @@ struct AdaptiveState {
 // Returns the number of stages of the film: two with a threshold above 0.
 std::size_t adaptive_stages(double threshold);
 
-// Returns the number of samples per pixel at the next judgement, or 0 after the last one, which has half of the
+// Returns the number of samples per pixel at the next convergence test, or 0 after the last one, which has half of the
 // samples. `spp` is the average over the image, at least kMinAdaptiveSpp.
-std::uint32_t next_round(std::uint32_t judged, int spp, double threshold);
+std::uint32_t next_round(std::uint32_t tested_spp, int spp, double threshold);
 
 // Returns the noise of the pixels of one half of a tile: the root of the mean of v / (b + kDark), with v the variance
 // of the pixel's mean luminance and b the luminance. This measure is the error as the eye sees it, a standard
@@ -79,10 +79,10 @@ double image_noise(const Film& film, PixelRect tile);
 
 // Decides each half of an open tile for which the other half measures a noise of at most `threshold`. The pixels of
 // open tiles have `end` samples.
-void judge(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state);
+void test_convergence(const Film& film, std::uint32_t end, double threshold, AdaptiveState& state);
 
 // Decides all halves that are still undecided. All pixels of a half together have at most `spp` samples per pixel. A
 // pixel gets between half and four times the average, or fewer samples if fewer are enough for the threshold.
-void assign_shares(const Film& film, int spp, double threshold, AdaptiveState& state);
+void allocate_samples(const Film& film, int spp, double threshold, AdaptiveState& state);
 
 }  // namespace fathom::runtime

@@ -29,7 +29,7 @@ class ByteWriter;
 namespace fathom::runtime {
 
 // Max magnitude of the sum over a pixel's samples.
-inline constexpr double kFullPixel = 0x1p31;
+inline constexpr double kMaxPixelSum = 0x1p31;
 // A sample below kFaintLight may be off by more than a hundredth, and is 0 below half of kFilmStep.
 inline constexpr double kFilmStep = 0x1p-32, kFaintLight = 50 * kFilmStep;
 

@@ -8,7 +8,7 @@ namespace {
 
 // visit_pixel() passes each sum of a pixel to a Sink, in the same order for both directions: Writing writes the sum,
 // Reading fills the sum in.
-struct Writing {
+struct SumWriter {
   vm::ByteWriter& bytes;
 
   void operator()(std::uint32_t value) { bytes.u32(value); }
@@ -24,7 +24,7 @@ struct Writing {
   }
 };
 
-struct Reading {
+struct SumReader {
   vm::ByteReader& bytes;
 
   void operator()(std::uint32_t& value) { value = bytes.u32(); }
@@ -72,13 +72,13 @@ void Film::visit_pixel(Self& film, std::size_t at, Sink&& sink) {
 
 void Film::write_sums(PixelRect rect, vm::ByteWriter& out) const {
   for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x) visit_pixel(*this, area_.index(x, y), Writing{out});
+    for (int x = rect.x0; x < rect.x1; ++x) visit_pixel(*this, area_.index(x, y), SumWriter{out});
   }
 }
 
 bool Film::read_sums(PixelRect rect, vm::ByteReader& in) {
   for (int y = rect.y0; y < rect.y1; ++y) {
-    for (int x = rect.x0; x < rect.x1; ++x) visit_pixel(*this, area_.index(x, y), Reading{in});
+    for (int x = rect.x0; x < rect.x1; ++x) visit_pixel(*this, area_.index(x, y), SumReader{in});
   }
   return !in.failed();
 }

@@ -37,25 +37,25 @@ class Input {
   explicit Input(const std::string& path) : path_(path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
-      unread_ = {fmt::format("cannot read `{}`: {}", path, error ? error.message() : "it is not a regular file"),
+      read_error_ = {fmt::format("cannot read `{}`: {}", path, error ? error.message() : "it is not a regular file"),
                  true, false};
       return;
     }
     left_ = std::filesystem::file_size(path, error);
     file_.open(path, std::ios::binary);
-    if (error || !file_) unread_ = {fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true, false};
+    if (error || !file_) read_error_ = {fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true, false};
   }
 
-  const std::optional<UnreadFilm>& unread() const { return unread_; }
+  const std::optional<FilmReadError>& read_error() const { return read_error_; }
   std::uint64_t left() const { return left_; }
 
   // Returns the next bytes; none if the file has fewer or cannot be read.
   std::span<const std::uint8_t> take(std::uint64_t count) {
-    if (unread_) return {};
+    if (read_error_) return {};
     if (count > left_) return refuse("it ends too early");
     bytes_.resize(count);
     if (!file_.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(count))) {
-      unread_ = {fmt::format("cannot read `{}`: {}", path_, std::strerror(errno)), true, false};
+      read_error_ = {fmt::format("cannot read `{}`: {}", path_, std::strerror(errno)), true, false};
       return {};
     }
     left_ -= count;
@@ -72,8 +72,8 @@ class Input {
     if (found.low != low || found.high != high) return refuse("it is damaged: a checksum does not fit");
     return all.first(count);
   }
-  std::span<const std::uint8_t> refuse(std::string_view why, bool foreign = false) {
-    if (!unread_) unread_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false, foreign};
+  std::span<const std::uint8_t> refuse(std::string_view why, bool not_a_film = false) {
+    if (!read_error_) read_error_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false, not_a_film};
     return {};
   }
 
@@ -81,7 +81,7 @@ class Input {
   const std::string& path_;
   std::ifstream file_;
   std::uint64_t left_ = 0;
-  std::optional<UnreadFilm> unread_;
+  std::optional<FilmReadError> read_error_;
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -97,7 +97,7 @@ std::optional<FilmFile> read_head_of(Input& in, const ReadLimits& limits) {
     return std::nullopt;
   }
   vm::ByteReader preamble(in.take(kPreamble));
-  if (in.unread()) return std::nullopt;
+  if (in.read_error()) return std::nullopt;
   if (const std::uint32_t format = preamble.u32(); format != kFilmFormat) {
     in.refuse(fmt::format("it is of format {}, and this program reads {}", format, kFilmFormat));
     return std::nullopt;
@@ -109,7 +109,7 @@ std::optional<FilmFile> read_head_of(Input& in, const ReadLimits& limits) {
   }
   if (!is_allowed(kHeadGrowth * static_cast<double>(size), limits, in)) return std::nullopt;
   vm::ByteReader bytes(in.take_checked(size));
-  if (in.unread()) return std::nullopt;
+  if (in.read_error()) return std::nullopt;
   FilmFile file;
   auto problem = read_shape(bytes, file);
   if (!problem && sums_size(file.shape) != in.left()) problem = "it is not as long as its head says";
@@ -127,20 +127,20 @@ bool read_sums(const FilmShape& shape, Film& film, Input& in) {
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     const PixelRect tile = tiles.at(i);
     vm::ByteReader bytes(in.take_checked(tile.pixels() * pixel));
-    if (in.unread() || !film.read_sums(tile, bytes)) return false;
+    if (in.read_error() || !film.read_sums(tile, bytes)) return false;
   }
   return true;
 }
 
-std::variant<FilmFile, UnreadFilm> read(const std::string& path, const ReadLimits& limits, bool with_sums) {
+std::variant<FilmFile, FilmReadError> read(const std::string& path, const ReadLimits& limits, bool with_sums) {
   Input in(path);
-  if (in.unread()) return *in.unread();
+  if (in.read_error()) return *in.read_error();
   std::optional<FilmFile> head = read_head_of(in, limits);
-  if (!head) return *in.unread();
+  if (!head) return *in.read_error();
   if (!with_sums) return *std::move(head);
   const bool read =
       is_allowed(static_cast<double>(in.left()), limits, in) && read_sums(head->shape, head->render.film, in);
-  if (!read) return *in.unread();
+  if (!read) return *in.read_error();
   return *std::move(head);
 }
 
@@ -192,11 +192,11 @@ std::optional<std::string> write_film(const FilmHeader& header, const PartialRen
   return file.commit();
 }
 
-std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const ReadLimits& limits) {
+std::variant<FilmFile, FilmReadError> read_film(const std::string& path, const ReadLimits& limits) {
   return read(path, limits, true);
 }
 
-std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits) {
+std::variant<FilmFile, FilmReadError> read_film_header(const std::string& path, const ReadLimits& limits) {
   return read(path, limits, false);
 }
 

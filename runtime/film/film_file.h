@@ -30,10 +30,10 @@ namespace fathom::runtime {
 std::vector<std::string> differences(const Identity& first, const Identity& second, std::string_view there = "there",
                                      std::string_view here = "here");
 
-struct UnreadFilm {
+struct FilmReadError {
   std::string problem;  // a message
   bool missing;         // the file does not exist or cannot be read
-  bool foreign;         // the file does not begin like a film, so it is some other file of the user
+  bool not_a_film;         // the file does not begin like a film, so it is some other file of the user
 };
 
 // Appends the film to `file`, which records problems.
@@ -42,9 +42,9 @@ void write_film(const FilmHeader& header, const PartialRender& render, AtomicFil
                                                     const std::string& path);
 
 // Reads a film file. Refuses a film above the limits before allocating its memory.
-std::variant<FilmFile, UnreadFilm> read_film(const std::string& path, const ReadLimits& limits = {});
+std::variant<FilmFile, FilmReadError> read_film(const std::string& path, const ReadLimits& limits = {});
 // Like read_film(), but without the sums: the film has no pixels.
-std::variant<FilmFile, UnreadFilm> read_film_header(const std::string& path, const ReadLimits& limits = {});
+std::variant<FilmFile, FilmReadError> read_film_header(const std::string& path, const ReadLimits& limits = {});
 // Makes the process keep freed memory instead of returning it to the system page by page. Otherwise each of many
 // films read in turn would take new pages, which is half the time.
 void keep_freed_memory();

@@ -12,7 +12,7 @@ namespace {
 constexpr const char* kBadHeader = "its head makes no sense";
 // Max rows of an identity, about ten times the number that a render writes: comparing identities takes quadratic
 // time.
-constexpr std::size_t kMostRows = 256;
+constexpr std::size_t kMaxRows = 256;
 
 // Layers of a film, by bit from the lowest.
 constexpr bool FilmLayers::*kLayerBits[] = {&FilmLayers::first_hit, &FilmLayers::cost,     &FilmLayers::position,
@@ -99,7 +99,7 @@ bool is_range(SampleRange samples) {
 }
 
 // Refuses blocks that are not in the canonical form, because they may overlap. Checks the form instead of making it:
-// the file may hold any blocks, and tidying overlapping blocks takes far longer than reading them.
+// the file may hold any blocks, and canonicalising overlapping blocks takes far longer than reading them.
 Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
   Coverage covered;
   const std::size_t count = in.count(24);
@@ -114,7 +114,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
     }
     covered.add(block);
   }
-  if (!covered.is_tidy()) in.fail();
+  if (!covered.is_canonical()) in.fail();
   return covered;
 }
 
@@ -122,7 +122,7 @@ Coverage read_coverage(PixelRect area, vm::ByteReader& in) {
 AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   constexpr auto kMost = static_cast<std::uint32_t>(compiler::kMaxSpp);
   AdaptiveState state;
-  state.judged = in.u32();
+  state.tested_spp = in.u32();
   state.tiles.resize(in.count(8));
   for (AdaptiveTile& tile : state.tiles) {
     for (std::uint32_t& end : tile.ends) {
@@ -132,7 +132,7 @@ AdaptiveState read_adaptive(const FilmShape& shape, vm::ByteReader& in) {
   }
   const auto tiles = static_cast<std::int64_t>(state.tiles.size());
   const bool fits = tiles == 0 ? shape.stages == 1 : tiles == Tiles(shape.area, kAdaptiveTile).count();
-  if (!fits || state.judged > kMost) in.fail();
+  if (!fits || state.tested_spp > kMost) in.fail();
   return state;
 }
 
@@ -140,7 +140,7 @@ bool makes_sense(const FilmFile& head) {
   const FilmHeader& header = head.header;
   const auto side = [](int length) { return length >= 1 && length <= compiler::kMaxSide; };
   return side(header.width) && side(header.height) && is_range(header.samples) &&
-         std::int64_t{header.width} * header.height <= kMostPixels &&
+         std::int64_t{header.width} * header.height <= kMaxPixels &&
          is_within(head.shape.area, {0, 0, header.width, header.height}) &&
          (head.shape.stages == 1 || head.shape.stages == 2);
 }
@@ -180,7 +180,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
       out.u32(block.samples.last);
     }
   }
-  out.u32(render.adaptive.judged);
+  out.u32(render.adaptive.tested_spp);
   out.u32(static_cast<std::uint32_t>(render.adaptive.tiles.size()));
   for (const AdaptiveTile& tile : render.adaptive.tiles) {
     for (const std::uint32_t end : tile.ends) out.u32(end);
@@ -190,7 +190,7 @@ void write_head(const FilmHeader& header, const PartialRender& render, vm::ByteW
 std::optional<std::string> read_shape(vm::ByteReader& in, FilmFile& head) {
   FilmHeader& header = head.header;
   header.identity.resize(in.count(8));
-  if (header.identity.size() > kMostRows) return kBadHeader;
+  if (header.identity.size() > kMaxRows) return kBadHeader;
   for (auto& [name, value] : header.identity) {
     name = text_of(in);
     value = text_of(in);

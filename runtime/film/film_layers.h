@@ -11,8 +11,8 @@ namespace fathom::runtime {
 LayerValues layer_of(const Film& film, Layer layer);
 
 // Converts a layer of the film to an image of 8 bits.
-inline Picture layer_picture(const Film& film, Layer layer, ToneMapping tone = {}) {
-  return to_picture(Shown(layer_of(film, layer), tone));
+inline ByteImage layer_image(const Film& film, Layer layer, ToneMapping tone = {}) {
+  return to_byte_image(DisplayImage(layer_of(film, layer), tone));
 }
 
 }  // namespace fathom::runtime

@@ -142,7 +142,7 @@ constexpr Sensitivity kSensitivities[3] = {
 constexpr float kPiF = std::numbers::pi_v<float>;
 
 // Filters a channel by the eye's contrast sensitivity. The two-dimensional kernel sums to 1 as a whole.
-void blur_as_seen(Plane& plane, int width, int height, const Sensitivity& s, float pixels_per_degree) {
+void apply_contrast_sensitivity(Plane& plane, int width, int height, const Sensitivity& s, float pixels_per_degree) {
   constexpr float kWidest = 0.04f;  // b
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPiF * kPiF)) * pixels_per_degree));
   const auto kernel_of = [&](float b) {
@@ -158,7 +158,7 @@ void blur_as_seen(Plane& plane, int width, int height, const Sensitivity& s, flo
 }
 
 // Perceived content of one of the two images.
-struct Seen {
+struct PerceivedImage {
   Planes opponent;      // as on the screen, then filtered
   Plane edges, points;  // strength of the features
 };
@@ -170,7 +170,7 @@ Plane magnitude(const Plane& x, const Plane& y) {
 }
 
 // Finds edges where the first derivative of the lightness is large, and points where the second is (section 4.2).
-void find_features(Seen& seen, int width, int height, float pixels_per_degree) {
+void find_features(PerceivedImage& perceived, int width, int height, float pixels_per_degree) {
   const float deviation = 0.5f * kFeatureWidth * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));
   Kernel smooth = gaussian(1 / (2 * deviation * deviation), radius), edge = smooth, point = smooth;
@@ -182,33 +182,33 @@ void find_features(Seen& seen, int width, int height, float pixels_per_degree) {
   normalise(smooth);
   normalise(edge);
   normalise(point);
-  Plane light = seen.opponent[0];
+  Plane light = perceived.opponent[0];
   for (float& value : light) value = (value + 16) / 116;
-  seen.edges = magnitude(convolve(light, width, height, edge, smooth), convolve(light, width, height, smooth, edge));
-  seen.points =
+  perceived.edges = magnitude(convolve(light, width, height, edge, smooth), convolve(light, width, height, smooth, edge));
+  perceived.points =
       magnitude(convolve(light, width, height, point, smooth), convolve(light, width, height, smooth, point));
 }
 
-Seen look_at(RgbView picture, float pixels_per_degree) {
-  Seen seen;
-  for (std::size_t i = 0; i < picture.rgb.size(); i += 3) {
+PerceivedImage perceive(RgbView image, float pixels_per_degree) {
+  PerceivedImage perceived;
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
     glm::vec3 rgb;
     for (int c = 0; c < 3; ++c) {
-      const float value = picture.rgb[i + static_cast<std::size_t>(c)];
+      const float value = image.rgb[i + static_cast<std::size_t>(c)];
       rgb[c] = value > 0 ? std::min(value, 1.0f) : 0;
     }
     const glm::vec3 opponent = to_opponent(rgb);
-    for (std::size_t c = 0; c < 3; ++c) seen.opponent[c].push_back(opponent[static_cast<int>(c)]);
+    for (std::size_t c = 0; c < 3; ++c) perceived.opponent[c].push_back(opponent[static_cast<int>(c)]);
   }
-  find_features(seen, picture.width, picture.height, pixels_per_degree);
+  find_features(perceived, image.width, image.height, pixels_per_degree);
   for (std::size_t c = 0; c < 3; ++c) {
-    blur_as_seen(seen.opponent[c], picture.width, picture.height, kSensitivities[c], pixels_per_degree);
+    apply_contrast_sensitivity(perceived.opponent[c], image.width, image.height, kSensitivities[c], pixels_per_degree);
   }
-  return seen;
+  return perceived;
 }
 
-glm::vec3 color_at(const Seen& seen, std::size_t i) {
-  const glm::vec3 rgb = from_opponent({seen.opponent[0][i], seen.opponent[1][i], seen.opponent[2][i]});
+glm::vec3 color_at(const PerceivedImage& perceived, std::size_t i) {
+  const glm::vec3 rgb = from_opponent({perceived.opponent[0][i], perceived.opponent[1][i], perceived.opponent[2][i]});
   return {std::clamp(rgb.x, 0.0f, 1.0f), std::clamp(rgb.y, 0.0f, 1.0f), std::clamp(rgb.z, 0.0f, 1.0f)};
 }
 
@@ -216,7 +216,7 @@ glm::vec3 color_at(const Seen& seen, std::size_t i) {
 
 Flip flip(RgbView a, RgbView b, float pixels_per_degree) {
   CHECK(a.width == b.width && a.height == b.height, "pictures of different sizes");
-  const Seen first = look_at(a, pixels_per_degree), second = look_at(b, pixels_per_degree);
+  const PerceivedImage first = perceive(a, pixels_per_degree), second = perceive(b, pixels_per_degree);
   Flip result;
   for (std::size_t i = 0; i < first.edges.size(); ++i) {
     const float color = color_error(color_at(first, i), color_at(second, i));

@@ -23,11 +23,11 @@ namespace fathom::runtime {
 
 // Limits on a file that is read: larger than any image of ours, and small enough that a broken header does not take
 // all memory.
-inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 28, kMostValues = std::int64_t{1} << 31;
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28, kMaxValues = std::int64_t{1} << 31;
 
 // Maximum number of bytes that deflate makes of one: 258 of a length and a distance of one bit each (RFC 1951,
 // section 3.2.5).
-inline constexpr double kMostDeflated = 1032;
+inline constexpr double kMaxDeflated = 1032;
 
 // Metadata of a file: name -> value. Matrices act on row vectors from the right (p M), row by row, as OpenEXR keeps
 // and pbrt writes them.

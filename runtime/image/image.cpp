@@ -21,7 +21,7 @@ Word to_whole(double value) {
 class SrgbBytes {
  public:
   SrgbBytes() {
-    for (std::size_t i = 0; i < least_.size(); ++i) least_[i] = least_of(static_cast<int>(i) + 1);
+    for (std::size_t i = 0; i < least_.size(); ++i) least_[i] = min_of(static_cast<int>(i) + 1);
   }
   std::uint8_t operator()(double linear) const {
     if (!(linear > 0)) return 0;
@@ -29,7 +29,7 @@ class SrgbBytes {
   }
 
  private:
-  static double least_of(int byte) {
+  static double min_of(int byte) {
     double below = 0, enough = 1;
     while (true) {
       const double middle = (below + enough) / 2;
@@ -67,7 +67,7 @@ std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer) {
                      }};
 }
 
-Shown::Shown(LayerValues values, ToneMapping tone)
+DisplayImage::DisplayImage(LayerValues values, ToneMapping tone)
     : values_(std::move(values)),
       encoded_(is_light(values_.layer) || values_.layer == Layer::Albedo),
       curve_(tone.curve),
@@ -75,7 +75,7 @@ Shown::Shown(LayerValues values, ToneMapping tone)
   if (values_.layer == Layer::Depth) nearest_ = nearest_of(values_);
 }
 
-glm::dvec3 Shown::color(int x, int y) const {
+glm::dvec3 DisplayImage::color(int x, int y) const {
   const glm::dvec3 value(values_.at(x, y));
   switch (values_.layer) {
     case Layer::Beauty:
@@ -91,32 +91,32 @@ glm::dvec3 Shown::color(int x, int y) const {
   return value;
 }
 
-void Shown::row(int y, std::span<std::uint8_t> rgb) const {
+void DisplayImage::row(int y, std::span<std::uint8_t> rgb) const {
   static const SrgbBytes to_srgb;
   auto out = rgb.begin();
   for (int x = values_.area.x0; x < values_.area.x1; ++x) {
-    const glm::dvec3 shown = color(x, y + values_.area.y0);
-    for (int i = 0; i < 3; ++i) *out++ = encoded_ ? to_srgb(shown[i]) : to_whole<std::uint8_t>(shown[i]);
+    const glm::dvec3 display = color(x, y + values_.area.y0);
+    for (int i = 0; i < 3; ++i) *out++ = encoded_ ? to_srgb(display[i]) : to_whole<std::uint8_t>(display[i]);
   }
 }
 
-void Shown::row(int y, std::span<std::uint16_t> rgb) const {
+void DisplayImage::row(int y, std::span<std::uint16_t> rgb) const {
   auto out = rgb.begin();
   for (int x = values_.area.x0; x < values_.area.x1; ++x) {
-    const glm::dvec3 shown = color(x, y + values_.area.y0);
+    const glm::dvec3 display = color(x, y + values_.area.y0);
     for (int i = 0; i < 3; ++i)
-      *out++ = to_whole<std::uint16_t>(encoded_ ? compiler::srgb_encode(shown[i]) : shown[i]);
+      *out++ = to_whole<std::uint16_t>(encoded_ ? compiler::srgb_encode(display[i]) : display[i]);
   }
 }
 
-Picture to_picture(const Shown& shown) {
-  const std::size_t row = static_cast<std::size_t>(shown.width()) * 3;
-  Picture picture{shown.width(), shown.height(), {}};
-  picture.rgb.resize(row * static_cast<std::size_t>(shown.height()));
-  for (int y = 0; y < shown.height(); ++y) {
-    shown.row(y, std::span(picture.rgb).subspan(static_cast<std::size_t>(y) * row, row));
+ByteImage to_byte_image(const DisplayImage& display) {
+  const std::size_t row = static_cast<std::size_t>(display.width()) * 3;
+  ByteImage image{display.width(), display.height(), {}};
+  image.rgb.resize(row * static_cast<std::size_t>(display.height()));
+  for (int y = 0; y < display.height(); ++y) {
+    display.row(y, std::span(image.rgb).subspan(static_cast<std::size_t>(y) * row, row));
   }
-  return picture;
+  return image;
 }
 
 }  // namespace fathom::runtime

@@ -16,7 +16,7 @@
 namespace fathom::runtime {
 
 // An image of 8 bits, sRGB or in the encoding of its layer.
-struct Picture {
+struct ByteImage {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  // [y][x][rgb], y downwards
 };
@@ -57,10 +57,10 @@ struct LayerValues {
 std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer);  // nullopt: a channel is missing
 
 // An image for display that is made row by row, while it is written. Refers to the object it was made from.
-class Shown {
+class DisplayImage {
  public:
   // `tone` applies to radiance alone.
-  explicit Shown(LayerValues values, ToneMapping tone = {});
+  explicit DisplayImage(LayerValues values, ToneMapping tone = {});
 
   int width() const { return values_.area.width(); }
   int height() const { return values_.area.height(); }
@@ -79,6 +79,6 @@ class Shown {
   double nearest_ = 0;  // smallest value of a depth layer
 };
 
-Picture to_picture(const Shown& shown);
+ByteImage to_byte_image(const DisplayImage& display);
 
 }  // namespace fathom::runtime

@@ -7,15 +7,15 @@
 
 namespace fathom::runtime {
 
-Differences compare(RgbView picture, RgbView reference) {
-  CHECK(picture.width == reference.width && picture.height == reference.height, "pictures of different sizes");
-  const std::size_t pixels = picture.rgb.size() / 3;
+Differences compare(RgbView image, RgbView reference) {
+  CHECK(image.width == reference.width && image.height == reference.height, "pictures of different sizes");
+  const std::size_t pixels = image.rgb.size() / 3;
   Differences sum;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     double a[3], b[3];
     bool finite = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      a[i] = static_cast<double>(picture.rgb[3 * pixel + i]);
+      a[i] = static_cast<double>(image.rgb[3 * pixel + i]);
       b[i] = static_cast<double>(reference.rgb[3 * pixel + i]);
       finite &= std::isfinite(a[i]) && std::isfinite(b[i]);
     }

@@ -29,6 +29,6 @@ struct Differences {
 inline constexpr double kRelMseEpsilon = 0.01;
 
 // The images must be of one size.
-Differences compare(RgbView picture, RgbView reference);
+Differences compare(RgbView image, RgbView reference);
 
 }  // namespace fathom::runtime

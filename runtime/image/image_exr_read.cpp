@@ -29,7 +29,7 @@ double pixels_of(const exr_attr_box2i_t& window) {
 }
 
 // Returns how many bytes each compression makes of one at best. This is a limit, not the usual ratio.
-double most_unpacked(exr_compression_t compression) {
+double max_unpacked(exr_compression_t compression) {
   switch (compression) {
     case EXR_COMPRESSION_NONE:
       return 1;
@@ -39,9 +39,9 @@ double most_unpacked(exr_compression_t compression) {
     case EXR_COMPRESSION_B44A:
       return 11;  // 16 halves in 14 bytes, flat blocks in three
     case EXR_COMPRESSION_PXR24:
-      return kMostDeflated * 4 / 3;  // the fourth byte of floats was dropped before
+      return kMaxDeflated * 4 / 3;  // the fourth byte of floats was dropped before
     default:
-      return kMostDeflated;  // ZIP; PIZ has at most 410, runs of 256 halves in ten bits
+      return kMaxDeflated;  // ZIP; PIZ has at most 410, runs of 256 halves in ten bits
   }
 }
 
@@ -116,7 +116,7 @@ class ExrReader {
     if (compression == EXR_COMPRESSION_DWAA || compression == EXR_COMPRESSION_DWAB) {
       return fail("it is compressed by DWA, which is not read; ZIP and PIZ lose nothing");
     }
-    most_unpacked_ = most_unpacked(compression);
+    max_unpacked_ = max_unpacked(compression);
     tiled_ = storage == EXR_STORAGE_TILED;
     return tiled_ || storage == EXR_STORAGE_SCANLINE || fail("its pixels are deep: each has many samples");
   }
@@ -131,16 +131,16 @@ class ExrReader {
     }
     for (const exr_attr_box2i_t& window : {data_, display_}) {
       if (width_of(window) < 1 || height_of(window) < 1) return fail(kBadExr);
-      if (pixels_of(window) > static_cast<double>(kMostPixels)) return fail("it is too large");
+      if (pixels_of(window) > static_cast<double>(kMaxPixels)) return fail("it is too large");
     }
     const std::int64_t right = std::int64_t{data_.min.x} - display_.min.x,
                        down = std::int64_t{data_.min.y} - display_.min.y;
-    if (std::max(std::abs(right), std::abs(down)) > kMostPixels) return fail("it is too large");
+    if (std::max(std::abs(right), std::abs(down)) > kMaxPixels) return fail("it is too large");
     const double values = pixels_of(data_) * channels_->num_channels;
-    if (values > static_cast<double>(kMostValues)) return fail("it is too large");
+    if (values > static_cast<double>(kMaxValues)) return fail("it is too large");
     const double needed = sizeof(float) * values + kChunks * static_cast<double>(chunk);
     if (needed > memory_) return fail(too_much_memory(needed, memory_));
-    const double least = pixels_of(data_) * bytes_per_pixel() / most_unpacked_,
+    const double least = pixels_of(data_) * bytes_per_pixel() / max_unpacked_,
                  has = static_cast<double>(bytes_.size());
     return least <= has ||
            fail(too_few_bytes(static_cast<int>(width_of(data_)), static_cast<int>(height_of(data_)), least, has));
@@ -250,7 +250,7 @@ class ExrReader {
   const double memory_;
   exr_context_t context_ = nullptr;
   bool tiled_ = false;
-  double most_unpacked_ = 1;
+  double max_unpacked_ = 1;
   std::int32_t chunk_width_ = 0, chunk_height_ = 0;  // pixels; chunks at the edges may be smaller
   exr_attr_box2i_t data_{}, display_{};
   const exr_attr_chlist_t* channels_ = nullptr;

@@ -32,14 +32,14 @@ void append_bytes(void* context, void* data, int size) {
   bytes.insert(bytes.end(), first, first + size);
 }
 
-std::vector<std::uint8_t> encode_shown(const Shown& shown, int bits, bool srgb) {
-  std::vector<std::uint16_t> words(static_cast<std::size_t>(shown.width()) * 3);
-  return encode_png(shown.width(), shown.height(), bits, srgb, [&](int y, std::span<std::uint8_t> bytes) {
+std::vector<std::uint8_t> encode_display(const DisplayImage& display, int bits, bool srgb) {
+  std::vector<std::uint16_t> words(static_cast<std::size_t>(display.width()) * 3);
+  return encode_png(display.width(), display.height(), bits, srgb, [&](int y, std::span<std::uint8_t> bytes) {
     if (bits == 8) {
-      shown.row(y, bytes);
+      display.row(y, bytes);
       return;
     }
-    shown.row(y, words);
+    display.row(y, words);
     for (std::size_t i = 0; i < words.size(); ++i) {
       bytes[2 * i] = static_cast<std::uint8_t>(words[i] >> 8);
       bytes[2 * i + 1] = static_cast<std::uint8_t>(words[i]);
@@ -117,10 +117,10 @@ const ImageFormatInfo* image_format_of(const std::string& path) {
   return nullptr;
 }
 
-std::string image_endings(bool shown_only) {
+std::string image_endings(bool display_only) {
   std::string endings;
   for (const ImageFormatInfo& format : kImageFormats) {
-    if (shown_only && !format.shown) continue;
+    if (display_only && !format.for_display) continue;
     endings += fmt::format("{}.{}", endings.empty() ? "" : ", ", format.ending);
   }
   return endings;
@@ -133,23 +133,23 @@ std::optional<std::string> check_image_path(const std::string& path) {
   return check_file_path(path);
 }
 
-std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
+std::optional<std::string> write_layer(const LayerValues& layer, const ImageOptions& options,
                                        const std::string& path) {
   if (std::optional<std::string> problem = check_ending(path)) return problem;
   AtomicFile file(path);
   return write_layer(layer, options, image_format_of(path)->format, file);
 }
 
-std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options, ImageFormat format,
+std::optional<std::string> write_layer(const LayerValues& layer, const ImageOptions& options, ImageFormat format,
                                        AtomicFile& file) {
   switch (format) {
     case ImageFormat::Png: {
       const bool srgb = is_light(layer.layer) || layer.layer == Layer::Albedo;
-      return write_encoded(encode_shown(Shown(layer, options.tone), options.bits, srgb), file);
+      return write_encoded(encode_display(DisplayImage(layer, options.tone), options.bits, srgb), file);
     }
     case ImageFormat::Jpeg:
     case ImageFormat::Bmp:
-      return write_encoded(encode_image(to_picture(Shown(layer, options.tone)), format), file);
+      return write_encoded(encode_image(to_byte_image(DisplayImage(layer, options.tone)), format), file);
     case ImageFormat::Pfm:
       return write_float_map(layer, file);
     case ImageFormat::Hdr:
@@ -161,16 +161,16 @@ std::optional<std::string> write_layer(const LayerValues& layer, const PictureOp
   return std::nullopt;
 }
 
-std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat format) {
+std::vector<std::uint8_t> encode_image(const ByteImage& image, ImageFormat format) {
   std::vector<std::uint8_t> bytes;
-  const int w = picture.width, h = picture.height;
+  const int w = image.width, h = image.height;
   const std::size_t row = static_cast<std::size_t>(w) * 3;
-  const void* data = picture.rgb.data();
+  const void* data = image.rgb.data();
   int done = 1;
   switch (format) {
     case ImageFormat::Png:
       bytes = encode_png(w, h, 8, false, [&](int y, std::span<std::uint8_t> out) {
-        std::copy_n(picture.rgb.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row), row,
+        std::copy_n(image.rgb.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * row), row,
                     out.begin());
       });
       break;
@@ -179,7 +179,7 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
       break;
     case ImageFormat::Bmp:
       // The header's numbers have 32 bits, and rows are padded.
-      done = picture.rgb.size() < (std::size_t{1} << 31) - (std::size_t{1} << 20) &&
+      done = image.rgb.size() < (std::size_t{1} << 31) - (std::size_t{1} << 20) &&
              stbi_write_bmp_to_func(append_bytes, &bytes, w, h, 3, data);
       break;
     default:
@@ -189,14 +189,14 @@ std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat forma
   return bytes;
 }
 
-std::optional<std::string> write_image(const Picture& picture, const std::string& path) {
+std::optional<std::string> write_image(const ByteImage& image, const std::string& path) {
   if (std::optional<std::string> problem = check_ending(path)) return problem;
   AtomicFile file(path);
-  return write_image(picture, image_format_of(path)->format, file);
+  return write_image(image, image_format_of(path)->format, file);
 }
 
-std::optional<std::string> write_image(const Picture& picture, ImageFormat format, AtomicFile& file) {
-  return write_encoded(encode_image(picture, format), file);
+std::optional<std::string> write_image(const ByteImage& image, ImageFormat format, AtomicFile& file) {
+  return write_encoded(encode_image(image, format), file);
 }
 
 std::optional<std::string> write_float_map(std::span<const float> values, int width, int height,

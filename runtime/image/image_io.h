@@ -24,7 +24,7 @@ enum class ImageFormat { Png, Jpeg, Bmp, Exr, Pfm, Hdr };
 struct ImageFormatInfo {
   std::string_view ending;
   ImageFormat format;
-  bool shown;  // holds an image for display, not floats
+  bool for_display;  // holds an image for display, not floats
   bool deep;   // may have 16 bits
 };
 inline constexpr std::array<ImageFormatInfo, 7> kImageFormats = {{
@@ -41,7 +41,7 @@ inline constexpr std::array<ImageFormatInfo, 7> kImageFormats = {{
 const ImageFormatInfo* image_format_of(const std::string& path);
 
 // Returns ".png, .jpg, .jpeg, .bmp" for formats that are shown; with ", .exr, .pfm, .hdr" all formats.
-std::string image_endings(bool shown_only = false);
+std::string image_endings(bool display_only = false);
 
 // True if the name ends in .pfm, in any case.
 bool is_float_map(const std::string& path);
@@ -49,7 +49,7 @@ bool is_float_map(const std::string& path);
 // Returns why no image can be written under this name, or nothing. Callers ask before rendering.
 std::optional<std::string> check_image_path(const std::string& path);
 
-struct PictureOptions {
+struct ImageOptions {
   ToneMapping tone;  // of the beauty layer, in formats that are shown
   int bits = 8;      // 8 or 16 per sample; 16 only for formats with `deep`
 };
@@ -57,16 +57,16 @@ struct PictureOptions {
 // Writes a layer in any format except OpenEXR. Returns the reason when that fails, and then the target is as it was.
 // Float formats hold the layer's own values: linear sRGB, scene units, normals from -1 to 1. HDR has no negative
 // numbers, so it holds n/2 + 1/2 for hits.
-[[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
+[[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const ImageOptions& options,
                                                      const std::string& path);
-[[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const PictureOptions& options,
+[[nodiscard]] std::optional<std::string> write_layer(const LayerValues& layer, const ImageOptions& options,
                                                      ImageFormat format, AtomicFile& file);  // commits it
 
 // Encodes an image of 8 bits in a format that is shown. Returns the bytes of a file, empty when the encoder fails.
 // write_image() writes these bytes to a file, like write_layer().
-std::vector<std::uint8_t> encode_image(const Picture& picture, ImageFormat format);
-[[nodiscard]] std::optional<std::string> write_image(const Picture& picture, const std::string& path);
-[[nodiscard]] std::optional<std::string> write_image(const Picture& picture, ImageFormat format, AtomicFile& file);
+std::vector<std::uint8_t> encode_image(const ByteImage& image, ImageFormat format);
+[[nodiscard]] std::optional<std::string> write_image(const ByteImage& image, const std::string& path);
+[[nodiscard]] std::optional<std::string> write_image(const ByteImage& image, ImageFormat format, AtomicFile& file);
 
 // Writes values [y][x], y downwards, like write_layer(), as a grey portable float map: 32 bits per value, little
 // endian, rows from the bottom. Source: Debevec, "PFM Portable FloatMap Image Format", 2001.

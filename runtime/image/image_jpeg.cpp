@@ -19,7 +19,7 @@ constexpr const char* kTooEarly = "it ends too early";
 constexpr double kSamplesInBlock = 64, kBitsOfBlock = 2, kBitsOfProgressiveBlock = 1;
 constexpr double kBytesOfCoefficients = kSamplesInBlock * sizeof(JCOEF);
 // Each scan visits all blocks, and may consist of only a few bytes. Encoders write about ten scans.
-constexpr int kMostScans = 100;
+constexpr int kMaxScans = 100;
 
 // True if libjpeg, after this warning, goes on without a part of the image.
 bool loses_samples(int warning) {
@@ -27,9 +27,9 @@ bool loses_samples(int warning) {
          warning == JWRN_MUST_RESYNC;
 }
 
-class Reader {
+class JpegReader {
  public:
-  Reader(std::span<const std::uint8_t> bytes, double memory) : bytes_(bytes), memory_(memory) {
+  JpegReader(std::span<const std::uint8_t> bytes, double memory) : bytes_(bytes), memory_(memory) {
     jpeg_.err = jpeg_std_error(&errors_);
     errors_.error_exit = [](j_common_ptr jpeg) { self(jpeg).leave(); };
     errors_.emit_message = [](j_common_ptr jpeg, int level) {
@@ -37,19 +37,19 @@ class Reader {
     };
     jpeg_.client_data = this;
   }
-  ~Reader() { jpeg_destroy_decompress(&jpeg_); }
-  Reader(const Reader&) = delete;
-  Reader& operator=(const Reader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg_); }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
 
-  std::variant<JpegPicture, std::string> read() {
+  std::variant<JpegImage, std::string> read() {
     if (!begin() || !is_allowed()) return std::move(problem_);
-    picture_.samples.resize(row() * static_cast<std::size_t>(picture_.height));
+    image_.samples.resize(row() * static_cast<std::size_t>(image_.height));
     if (!decode()) return std::move(problem_);
-    return std::move(picture_);
+    return std::move(image_);
   }
 
  private:
-  static Reader& self(j_common_ptr jpeg) { return *static_cast<Reader*>(jpeg->client_data); }
+  static JpegReader& self(j_common_ptr jpeg) { return *static_cast<JpegReader*>(jpeg->client_data); }
 
   bool fail(std::string why) {
     if (problem_.empty()) problem_ = std::move(why);
@@ -91,28 +91,28 @@ class Reader {
     }
     if (!grey && jpeg_.num_components != 3) return fail("it has neither one channel nor three");
     if (jpeg_.arith_code) return fail("it has arithmetic coding, which is not read; save it with Huffman coding");
-    picture_.width = static_cast<int>(jpeg_.image_width);
-    picture_.height = static_cast<int>(jpeg_.image_height);
-    picture_.components = grey ? 1 : 3;
-    const double pixels = static_cast<double>(picture_.width) * picture_.height;
-    if (pixels > static_cast<double>(kMostPixels)) return fail("it is too large");
+    image_.width = static_cast<int>(jpeg_.image_width);
+    image_.height = static_cast<int>(jpeg_.image_height);
+    image_.components = grey ? 1 : 3;
+    const double pixels = static_cast<double>(image_.width) * image_.height;
+    if (pixels > static_cast<double>(kMaxPixels)) return fail("it is too large");
     const double coefficients = jpeg_has_multiple_scans(&jpeg_) ? blocks() * kBytesOfCoefficients : 0;
     const double file_size = static_cast<double>(bytes_.size());
-    const double needed = file_size + pixels * (picture_.components + 3 * sizeof(float)) + coefficients;
+    const double needed = file_size + pixels * (image_.components + 3 * sizeof(float)) + coefficients;
     if (needed > memory_) return fail(too_much_memory(needed, memory_));
     const double least = blocks() * (jpeg_.progressive_mode ? kBitsOfProgressiveBlock : kBitsOfBlock) / 8;
-    return least <= file_size || fail(too_few_bytes(picture_.width, picture_.height, least, file_size));
+    return least <= file_size || fail(too_few_bytes(image_.width, image_.height, least, file_size));
   }
 
   std::size_t row() const {
-    return static_cast<std::size_t>(picture_.width) * static_cast<std::size_t>(picture_.components);
+    return static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.components);
   }
 
   bool decode() { return setjmp(out_) == 0 && decode_rows(); }
 
   // Not inlined: longjmp() may clobber variables of the function that calls setjmp().
   [[gnu::noinline]] bool decode_rows() {
-    jpeg_.out_color_space = picture_.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_.out_color_space = image_.components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     jpeg_.dct_method = JDCT_ISLOW;  // the same bits with and without SIMD
     jpeg_.do_block_smoothing = FALSE;
     jpeg_.buffered_image = jpeg_has_multiple_scans(&jpeg_);
@@ -120,7 +120,7 @@ class Reader {
     jpeg_start_decompress(&jpeg_);
     if (buffered && (!read_scans() || !jpeg_start_output(&jpeg_, jpeg_.input_scan_number))) return false;
     while (jpeg_.output_scanline < jpeg_.output_height) {
-      JSAMPROW samples = picture_.samples.data() + jpeg_.output_scanline * row();
+      JSAMPROW samples = image_.samples.data() + jpeg_.output_scanline * row();
       if (jpeg_read_scanlines(&jpeg_, &samples, 1) == 0) return fail(kTooEarly);
     }
     if (buffered && !jpeg_finish_output(&jpeg_)) return fail(kTooEarly);
@@ -134,7 +134,7 @@ class Reader {
     int scans = 0;
     for (int got = JPEG_REACHED_SOS; got != JPEG_REACHED_EOI; got = jpeg_consume_input(&jpeg_)) {
       if (got != JPEG_REACHED_SOS) continue;
-      if (++scans > kMostScans) return fail("it has more than 100 scans, as no program writes");
+      if (++scans > kMaxScans) return fail("it has more than 100 scans, as no program writes");
       for (int i = 0; i < jpeg_.comps_in_scan && jpeg_.Ss == 0; ++i) {
         has_mean[static_cast<std::size_t>(jpeg_.cur_comp_info[i]->component_index)] = true;
       }
@@ -150,14 +150,14 @@ class Reader {
   jpeg_decompress_struct jpeg_{};
   jpeg_error_mgr errors_{};
   std::jmp_buf out_{};
-  JpegPicture picture_;
+  JpegImage image_;
   std::string problem_;
 };
 
 }  // namespace
 
-std::variant<JpegPicture, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory) {
-  return Reader(bytes, memory).read();
+std::variant<JpegImage, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory) {
+  return JpegReader(bytes, memory).read();
 }
 
 }  // namespace fathom::runtime

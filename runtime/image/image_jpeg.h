@@ -11,13 +11,13 @@
 namespace fathom::runtime {
 
 // Samples [y][x][component] of 1 (grey) or 3 components.
-struct JpegPicture {
+struct JpegImage {
   int width = 0, height = 0, components = 0;
   std::vector<std::uint8_t> samples;
 };
 
 // Returns the file's image, or why it cannot be read: the image needs more than `memory` bytes, the file is too short
 // for its size in pixels, or the data end or make no sense before the last pixel. Ignores colour profiles.
-std::variant<JpegPicture, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory);
+std::variant<JpegImage, std::string> decode_jpeg(std::span<const std::uint8_t> bytes, double memory);
 
 }  // namespace fathom::runtime

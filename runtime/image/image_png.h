@@ -19,13 +19,13 @@ using PngRow = std::function<void(int y, std::span<std::uint8_t> bytes)>;
 std::vector<std::uint8_t> encode_png(int width, int height, int bits, bool srgb, const PngRow& row);
 
 // Samples [y][x][component] of 1 (grey), 2 (grey and alpha), 3 or 4 components, all of 16 bits for any file.
-struct PngPicture {
+struct PngImage {
   int width = 0, height = 0, components = 0;
   std::vector<std::uint16_t> samples;
 };
 
 // Returns the file's image, or why it cannot be read. An image that needs more than `memory` bytes is refused before
 // memory is allocated. Ignores colour profiles.
-std::variant<PngPicture, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
+std::variant<PngImage, std::string> decode_png(std::span<const std::uint8_t> bytes, double memory);
 
 }  // namespace fathom::runtime

@@ -24,7 +24,7 @@ namespace fathom::runtime {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using Decoded = std::variant<FloatImage, std::string>;
+using DecodeResult = std::variant<FloatImage, std::string>;
 
 // Returns an image of that size with the channels R, G, B and perhaps A.
 FloatImage empty_image(int width, int height, bool alpha) {
@@ -103,7 +103,7 @@ constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSou
 using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
 
 // BMP, uncompressed: the header, whose length is its first number, holds the bits per pixel.
-double least_of_bmp(const Bytes& bytes, double width, double height) {
+double min_of_bmp(const Bytes& bytes, double width, double height) {
   const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
   const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
   return width * height * std::max(1.0, bits) / 8;
@@ -111,14 +111,14 @@ double least_of_bmp(const Bytes& bytes, double width, double height) {
 
 // Radiance: a row begins with four bytes, and each of its four components stores a run of up to 127 in two bytes.
 // Very short and very long rows have no runs, nor have older files.
-double least_of_hdr(const Bytes&, double width, double height) {
+double min_of_hdr(const Bytes&, double width, double height) {
   const bool runs = width >= 8 && width < 32768;
   return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
 }
 
 // Returns the reason why stb may not decode an image, judging by its header. stb's output takes `sample` bytes per
 // number, and the image made of it a float per number.
-std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes least_of) {
+std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes min_of) {
   int width = 0, height = 0, components = 0;
   // Reading from memory, stb sees the end.
   if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
@@ -126,11 +126,11 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
     return reason != nullptr ? reason : "its content makes no sense";
   }
   if (width < 1 || height < 1) return "it has no pixels";
-  if (std::int64_t{width} * height > kMostPixels) return "it is too large";
+  if (std::int64_t{width} * height > kMaxPixels) return "it is too large";
   const double numbers = static_cast<double>(width) * height * std::max(3, components);
   const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
   if (needed > memory) return too_much_memory(needed, memory);
-  const double least = least_of(bytes, width, height), has = static_cast<double>(bytes.size());
+  const double least = min_of(bytes, width, height), has = static_cast<double>(bytes.size());
   if (least > has) return too_few_bytes(width, height, least, has);
   return std::nullopt;
 }
@@ -156,10 +156,10 @@ bool begins_as(ImageFormat format, const Bytes& bytes) {
 
 // True if the first bytes are the format's signature. For a format that is shown, any such signature will do.
 bool has_signature(ImageFormat format, const Bytes& bytes) {
-  constexpr std::array kShown = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
+  constexpr std::array kDisplayFormats = {ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp};
   const auto begins = [&](ImageFormat other) { return begins_as(other, bytes); };
-  const bool shown = std::find(kShown.begin(), kShown.end(), format) != kShown.end();
-  return shown ? std::any_of(kShown.begin(), kShown.end(), begins) : begins(format);
+  const bool display = std::find(kDisplayFormats.begin(), kDisplayFormats.end(), format) != kDisplayFormats.end();
+  return display ? std::any_of(kDisplayFormats.begin(), kDisplayFormats.end(), begins) : begins(format);
 }
 
 // Makes an image of integer samples [y][x][component], taken for sRGB signals.
@@ -175,26 +175,26 @@ FloatImage from_signals(const Sample* samples, int width, int height, int compon
       [](Sample sample) { return static_cast<float>(sample) / static_cast<float>(kMost); });
 }
 
-Decoded decode_deep(const Bytes& bytes, double memory) {
+DecodeResult decode_deep(const Bytes& bytes, double memory) {
   const auto read = decode_png(bytes, memory);
   if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
-  const auto& picture = std::get<PngPicture>(read);
+  const auto& picture = std::get<PngImage>(read);
   return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
 }
 
-Decoded decode_lossy(const Bytes& bytes, double memory) {
+DecodeResult decode_lossy(const Bytes& bytes, double memory) {
   const auto read = decode_jpeg(bytes, memory);
   if (const auto* problem = std::get_if<std::string>(&read)) return *problem;
-  const auto& picture = std::get<JpegPicture>(read);
+  const auto& picture = std::get<JpegImage>(read);
   return from_signals(picture.samples.data(), picture.width, picture.height, picture.components);
 }
 
-Decoded decode_shown(const Bytes& bytes, double memory) {
+DecodeResult decode_display(const Bytes& bytes, double memory) {
   // Decodes PNG and JPEG by their signature, whatever the name says. stb allocates the size that a PNG's chunk states
   // before it reads the chunk, and invents the missing end of a JPEG.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
   if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
-  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, least_of_bmp)) return std::move(*problem);
+  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, min_of_bmp)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
   const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
@@ -210,11 +210,11 @@ bool ends_hdr_header(const Bytes& bytes) {
   return end != text.npos && text.find('\n', end + 2) != text.npos;
 }
 
-Decoded decode_hdr(const Bytes& bytes, double memory) {
+DecodeResult decode_hdr(const Bytes& bytes, double memory) {
   // stb would otherwise decode any other image to linear light.
   if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
   if (!ends_hdr_header(bytes)) return "its header does not end";
-  if (auto problem = stb_problem(bytes, sizeof(float), memory, least_of_hdr)) return std::move(*problem);
+  if (auto problem = stb_problem(bytes, sizeof(float), memory, min_of_hdr)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes, '\xff'};  // longer than any run
   const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
@@ -245,7 +245,7 @@ std::optional<T> to(std::string_view word) {
 }
 
 // Source: see write_float_map().
-Decoded decode_pfm(const Bytes& bytes, double memory) {
+DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t at = 0;
   const std::string_view kind = next_word(text, at);
@@ -256,7 +256,7 @@ Decoded decode_pfm(const Bytes& bytes, double memory) {
     return "it has no header of a portable float map";
   }
   const int components = grey ? 1 : 3;
-  if (std::int64_t{*width} * *height > kMostPixels) return "it is too large";
+  if (std::int64_t{*width} * *height > kMaxPixels) return "it is too large";
   const std::size_t count =
       static_cast<std::size_t>(*width) * static_cast<std::size_t>(*height) * static_cast<std::size_t>(components);
   if (text.size() - at < count * 4) return "it ends too early";
@@ -294,7 +294,7 @@ bool read_bytes(const std::string& path, ImageFormat format, double most, Bytes&
   return std::ferror(file.get()) == 0;
 }
 
-Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
+DecodeResult decode(ImageFormat format, const Bytes& bytes, double memory) {
   if (!has_signature(format, bytes)) return "it does not begin as such a file does";
   if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
   switch (format) {
@@ -305,28 +305,28 @@ Decoded decode(ImageFormat format, const Bytes& bytes, double memory) {
     case ImageFormat::Hdr:
       return decode_hdr(bytes, memory);
     default:
-      return decode_shown(bytes, memory);
+      return decode_display(bytes, memory);
   }
 }
 
 }  // namespace
 
-std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits) {
+std::variant<FloatImage, ImageReadError> read_image(const std::string& path, const ReadLimits& limits) {
   const ImageFormatInfo* format = image_format_of(path);
   if (format == nullptr) {
-    return UnreadImage{
+    return ImageReadError{
         fmt::format("cannot tell the format of `{}`: its name must end in one of {}", path, image_endings())};
   }
   Bytes bytes;
   if (!read_bytes(path, format->format, limits.memory, bytes)) {
-    return UnreadImage{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
+    return ImageReadError{fmt::format("cannot read `{}`: {}", path, std::strerror(errno)), true};
   }
   if (bytes.size() > std::numeric_limits<int>::max() && format->format != ImageFormat::Exr) {
-    return UnreadImage{fmt::format("cannot read `{}`: it is too large", path)};
+    return ImageReadError{fmt::format("cannot read `{}`: it is too large", path)};
   }
-  Decoded decoded = decode(format->format, bytes, limits.memory);
+  DecodeResult decoded = decode(format->format, bytes, limits.memory);
   if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
-  return UnreadImage{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
+  return ImageReadError{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
                                  std::get<std::string>(decoded))};
 }
 

@@ -14,7 +14,7 @@
 namespace fathom::runtime {
 
 // The reason why an image could not be read, as a message.
-struct UnreadImage {
+struct ImageReadError {
   std::string problem;
   bool missing = false;  // the file could not be opened or read; otherwise its content is not what its name says
 };
@@ -25,6 +25,6 @@ struct ReadLimits {
 };
 
 // Reads an image. Refuses an image above the limits before allocating its memory.
-std::variant<FloatImage, UnreadImage> read_image(const std::string& path, const ReadLimits& limits = {});
+std::variant<FloatImage, ImageReadError> read_image(const std::string& path, const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

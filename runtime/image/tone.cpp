@@ -47,10 +47,10 @@ glm::dvec3 agx(glm::dvec3 light) {
   constexpr glm::dmat3 kOutset(1.19687900512017, -0.0528968517574562, -0.0529716355144438, -0.0980208811401368,
                                1.15190312990417, -0.0980434501171241, -0.0990297440797205, -0.0989611768448433,
                                1.15107367264116);
-  constexpr double kLeastStop = -12.47393, kMostStop = 4.026069;
+  constexpr double kMinStop = -12.47393, kMaxStop = 4.026069;
   const auto contrast = [](double v) {
     if (!(v > 0x1p-100)) v = 0x1p-100;  // below the least stop
-    const double x = clamp01((vm::real::log(v) / std::numbers::ln2 - kLeastStop) / (kMostStop - kLeastStop));
+    const double x = clamp01((vm::real::log(v) / std::numbers::ln2 - kMinStop) / (kMaxStop - kMinStop));
     return (((((15.5 * x - 40.14) * x + 31.96) * x - 6.868) * x + 0.4298) * x + 0.1191) * x - 0.00232;
   };
   // The curve yields a signal for a display of gamma 2.2.

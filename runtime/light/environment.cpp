@@ -19,7 +19,7 @@ constexpr float kPiFloat = std::numbers::pi_v<float>;
 constexpr double kRounding = 0x1p-24;
 // Minimum angle of a disc, degrees. Directions in float would make the disc larger by kRounding all round: at this
 // angle by 0.03 % of its area.
-constexpr double kLeastDisc = 0.02;
+constexpr double kMinDisc = 0.02;
 
 // Turns a direction about y, counter-clockwise as seen from above.
 glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
@@ -76,15 +76,15 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
     CHECK(image != nullptr && !image->pixels.empty(),
           "the scene's background is a picture, which must be read first");
     image_ = std::move(image);
-    turn_sine_ = vm::real::sin(background.image.rotate * vm::real::kDegree);
-    turn_cosine_ = vm::real::cos(background.image.rotate * vm::real::kDegree);
+    rotation_sine_ = vm::real::sin(background.image.rotate * vm::real::kDegree);
+    rotation_cosine_ = vm::real::cos(background.image.rotate * vm::real::kDegree);
     strength_ = static_cast<float>(background.image.strength);
-    table_ = SphereTable(image_->width, image_->height, filtered_luminance(*image_));
+    table_ = PiecewiseConstantSphere(image_->width, image_->height, filtered_luminance(*image_));
   }
   if (type_ == Type::Sky) {
     constexpr int kRows = 64;
     sky_.emplace(background.sky);
-    table_ = SphereTable(2 * kRows, kRows,
+    table_ = PiecewiseConstantSphere(2 * kRows, kRows,
                          cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
     if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
   }
@@ -96,7 +96,7 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
 
 // A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
 void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance) {
-  const double sine = vm::real::sin(std::max(degrees, kLeastDisc) * vm::real::kDegree), sin2 = sine * sine;
+  const double sine = vm::real::sin(std::max(degrees, kMinDisc) * vm::real::kDegree), sin2 = sine * sine;
   if (!(luminance(irradiance) > 0)) return;
   const double height = sin2 / (1 + std::sqrt(1 - sin2));
   discs_.push_back({direction, height, std::sqrt(2 * height) + kRounding,
@@ -104,13 +104,13 @@ void Environment::add_disc(glm::dvec3 direction, double degrees, glm::vec3 irrad
 }
 
 // Compares chords, because the cosine of a small angle has few digits.
-bool Environment::Disc::holds(glm::vec3 w) const {
+bool Environment::Disc::contains(glm::vec3 w) const {
   const glm::dvec3 chord = glm::normalize(glm::dvec3(w)) - direction;
   return glm::dot(chord, chord) <= rim * rim;
 }
 
 glm::vec3 Environment::pixel(glm::vec3 direction) const {
-  const glm::dvec2 uv = to_latlong(glm::dvec3(turned(direction, -turn_sine_, turn_cosine_)));
+  const glm::dvec2 uv = to_latlong(glm::dvec3(turned(direction, -rotation_sine_, rotation_cosine_)));
   const int width = image_->width, height = image_->height;
   const double x = uv.x * width - 0.5, y = uv.y * height - 0.5;
   const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
@@ -134,7 +134,7 @@ glm::vec3 Environment::backdrop(glm::vec3 direction) const {
 glm::vec3 Environment::radiance(glm::vec3 direction) const {
   glm::vec3 sum = backdrop(direction);
   for (const Disc& disc : discs_) {
-    if (disc.holds(direction)) sum += disc.radiance;
+    if (disc.contains(direction)) sum += disc.radiance;
   }
   return sum;
 }
@@ -145,42 +145,42 @@ float Environment::mean() const {
   return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
 }
 
-float Environment::estimate(const Disc& disc, const LightQuery& query) const {
-  const float cosine = glm::dot(query.normal, glm::vec3(disc.direction));
+float Environment::importance(const Disc& disc, const LightSampleContext& context) const {
+  const float cosine = glm::dot(context.normal, glm::vec3(disc.direction));
   // A disc that the horizon cuts counts as far as it may rise above the horizon.
   const auto rise = static_cast<float>(std::sqrt(disc.height * (2 - disc.height)));
-  return disc.irradiance * std::max(0.0f, (query.both_sides ? std::abs(cosine) : cosine) + rise);
+  return disc.irradiance * std::max(0.0f, (context.both_sides ? std::abs(cosine) : cosine) + rise);
 }
 
-float Environment::estimate(const LightQuery& query) const {
+float Environment::importance(const LightSampleContext& context) const {
   float sum = kPiFloat * mean();
-  for (const Disc& disc : discs_) sum += estimate(disc, query);
+  for (const Disc& disc : discs_) sum += importance(disc, context);
   return sum;
 }
 
-glm::vec3 Environment::sample(const LightQuery& query, float choice, glm::vec2 u) const {
-  float rest = choice * estimate(query) - kPiFloat * mean();
+glm::vec3 Environment::sample(const LightSampleContext& context, float choice, glm::vec2 u) const {
+  float rest = choice * importance(context) - kPiFloat * mean();
   const Disc* chosen = nullptr;
   for (const Disc& disc : discs_) {
-    const float own = estimate(disc, query);
+    const float own = importance(disc, context);
     if (rest < 0 && (chosen != nullptr || mean() > 0)) break;
     if (own > 0) chosen = &disc;
     rest -= own;
   }
-  if (chosen == nullptr) return turned(table_.sample(u), turn_sine_, turn_cosine_);
+  if (chosen == nullptr) return turned(table_.sample(u), rotation_sine_, rotation_cosine_);
   const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
   const SinCos turn = sincos_turn(u.y);
   const FrameOf<double> frame(chosen->direction);
   return frame.to_world({sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
 }
 
-float Environment::pdf(const LightQuery& query, glm::vec3 direction) const {
-  const float all = estimate(query);
+float Environment::pdf(const LightSampleContext& context, glm::vec3 direction) const {
+  const float all = importance(context);
   if (!(all > 0)) return 0;
-  float sum = mean() > 0 ? kPiFloat * mean() * table_.pdf(turned(direction, -turn_sine_, turn_cosine_)) : 0;
+  float sum = mean() > 0 ? kPiFloat * mean() * table_.pdf(turned(direction, -rotation_sine_, rotation_cosine_)) : 0;
   for (const Disc& disc : discs_) {
-    if (!disc.holds(direction)) continue;
-    sum += estimate(disc, query) / (2 * kPiFloat * static_cast<float>(disc.height));
+    if (!disc.contains(direction)) continue;
+    sum += importance(disc, context) / (2 * kPiFloat * static_cast<float>(disc.height));
   }
   return sum / all;
 }

@@ -15,9 +15,9 @@
 
 #include "compiler/scene/compiled_scene.h"
 #include "runtime/light/environment_file.h"
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 #include "runtime/light/sky.h"
-#include "runtime/sampling/sphere_table.h"
+#include "runtime/sampling/piecewise_constant_sphere.h"
 
 namespace fathom::runtime {
 
@@ -29,11 +29,11 @@ class Environment {
   glm::vec3 radiance(glm::vec3 direction) const;                // of rays that leave the scene
   bool emits() const { return mean() > 0 || !discs_.empty(); }  // true if there is light to sample
   // Returns an estimate of the irradiance by the sampled light, as luminance. 0 only if none of that light arrives.
-  float estimate(const LightQuery& query) const;
-  // Samples a direction by three numbers in [0,1). Requires estimate() > 0. pdf() returns its density per solid
+  float importance(const LightSampleContext& context) const;
+  // Samples a direction by three numbers in [0,1). Requires importance() > 0. pdf() returns its density per solid
   // angle.
-  glm::vec3 sample(const LightQuery& query, float choice, glm::vec2 u) const;
-  float pdf(const LightQuery& query, glm::vec3 direction) const;
+  glm::vec3 sample(const LightSampleContext& context, float choice, glm::vec2 u) const;
+  float pdf(const LightSampleContext& context, glm::vec3 direction) const;
 
  private:
   struct Disc {
@@ -44,7 +44,7 @@ class Environment {
     glm::vec3 radiance;
     float irradiance;  // luminance, on a surface that faces the disc
 
-    bool holds(glm::vec3 w) const;
+    bool contains(glm::vec3 w) const;
   };
   using Type = compiler::Background::Type;
 
@@ -52,15 +52,15 @@ class Environment {
   glm::vec3 backdrop(glm::vec3 direction) const;  // without discs
   glm::vec3 pixel(glm::vec3 direction) const;
   float mean() const;  // luminance of the backdrop if it is sampled, otherwise 0
-  float estimate(const Disc& disc, const LightQuery& query) const;
+  float importance(const Disc& disc, const LightSampleContext& context) const;
 
   Type type_;
   glm::dvec3 bottom_, top_;  // gradient
   std::optional<Sky> sky_;   // sky
   std::shared_ptr<const EnvironmentImage> image_;
-  double turn_sine_ = 0, turn_cosine_ = 1;  // of the image's rotation
+  double rotation_sine_ = 0, rotation_cosine_ = 1;  // of the image's rotation
   float strength_ = 1;                      // of the image
-  SphereTable table_;                       // of a sky or an image, in the image's own directions
+  PiecewiseConstantSphere table_;                       // of a sky or an image, in the image's own directions
   std::vector<Disc> discs_;
 };
 

@@ -19,21 +19,21 @@ float usable(float value) {
 
 }  // namespace
 
-std::variant<EnvironmentImage, UnreadImage> read_environment(const std::string& path, const ReadLimits& limits) {
+std::variant<EnvironmentImage, ImageReadError> read_environment(const std::string& path, const ReadLimits& limits) {
   const auto read = read_image(path, limits);
-  if (const auto* unread = std::get_if<UnreadImage>(&read)) return *unread;
+  if (const auto* unread = std::get_if<ImageReadError>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);
   // An image of luminance alone is grey.
   const std::vector<float>* grey = image.channel("Y");
   const std::vector<float>* channels[] = {image.channel("R"), image.channel("G"), image.channel("B")};
   for (const std::vector<float>*& channel : channels) {
     if (channel == nullptr) channel = grey;
-    if (channel == nullptr) return UnreadImage{fmt::format("`{}` has neither channels R, G and B nor Y", path)};
+    if (channel == nullptr) return ImageReadError{fmt::format("`{}` has neither channels R, G and B nor Y", path)};
   }
   const double pixels = static_cast<double>(image.area.pixels());
   const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + sizeof(glm::vec3));
   if (needed > limits.memory) {
-    return UnreadImage{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
+    return ImageReadError{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
   }
   EnvironmentImage result{image.area.width(), image.area.height(), {}};
   result.pixels.reserve(image.area.pixels());

@@ -14,7 +14,7 @@ namespace fathom::runtime {
 namespace {
 
 // Minimum probability of near lights, and of those beyond the scene, when there are both: estimates may be far off.
-constexpr float kLeastShare = 0.25f;
+constexpr float kMinShare = 0.25f;
 
 float cosine_of_degrees(double degrees) { return static_cast<float>(vm::real::cos(degrees * vm::real::kDegree)); }
 
@@ -28,9 +28,9 @@ float spot_falloff(float cosine, float outer, float inner) {
 
 // The projected area of a convex body is on average a quarter of its surface area (Cauchy). The projected area of a
 // quad is known.
-LightBounds bounds_of(const LampShape& shape, glm::vec3 radiance) {
+LightBounds bounds_of(const AreaLightShape& shape, glm::vec3 radiance) {
   LightBounds bounds{shape.centre(), shape.radius()};
-  const bool quad = shape.lamp().shape == compiler::Lamp::Shape::Quad;
+  const bool quad = shape.area_light().shape == compiler::AreaLight::Shape::Quad;
   bounds.intensity = luminance(radiance) * static_cast<float>(quad ? shape.area() : shape.area() / 4);
   if (quad) {
     bounds.axis = glm::vec3(glm::normalize(shape.normal()));
@@ -45,21 +45,21 @@ LightBounds bounds_of(const LampShape& shape, glm::vec3 radiance) {
 Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
     : environment_(scene, std::move(image)), tree_({}) {
   std::vector<LightBounds> bounds;
-  add_lamps(scene, bounds);
+  add_area_lights(scene, bounds);
   for (const compiler::Light& light : scene.lights) add_delta(light, bounds);
   tree_ = LightTree(std::move(bounds));
   all_near_ = directional_.empty() && !environment_.emits();
   find_touching();
 }
 
-void Lights::add_lamps(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds) {
-  has_lamps_.resize(scene.surfaces.size(), false);
-  for (const compiler::Lamp& lamp : scene.lamps) {
-    const compiler::Material& material = scene.materials[lamp.material];
-    const glm::vec3 radiance = typical_point(material).emitted();
-    lamps_.push_back({LampShape(lamp), radiance, false});
-    bounds.push_back(bounds_of(lamps_.back().shape, radiance));
-    has_lamps_[lamp.surface] = true;
+void Lights::add_area_lights(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds) {
+  has_area_lights_.resize(scene.surfaces.size(), false);
+  for (const compiler::AreaLight& area_light : scene.area_lights) {
+    const compiler::Material& material = scene.materials[area_light.material];
+    const glm::vec3 radiance = untextured_point(material).emitted_radiance();
+    area_lights_.push_back({AreaLightShape(area_light), radiance, false});
+    bounds.push_back(bounds_of(area_lights_.back().shape, radiance));
+    has_area_lights_[area_light.surface] = true;
   }
 }
 
@@ -67,7 +67,7 @@ void Lights::add_delta(const compiler::Light& light, std::vector<LightBounds>& b
   const float strength = luminance(glm::vec3(light.intensity));
   const bool directional = light.type == compiler::Light::Type::Directional;
   if (!(strength > 0) || (directional && light.angle > 0)) return;  // with an angle it is a disc of the environment
-  Delta delta{light};
+  DeltaLight delta{light};
   if (directional) {
     directional_.push_back(delta);
     return;
@@ -82,31 +82,31 @@ void Lights::add_delta(const compiler::Light& light, std::vector<LightBounds>& b
     bound.cos_spread = 1;
     bound.cos_emission = delta.cos_outer;
   }
-  near_deltas_.push_back(delta);
+  near_delta_lights_.push_back(delta);
   bounds.push_back(bound);
 }
 
-double Lights::tolerance(const LampShape& shape, glm::dvec3 place) const {
+double Lights::tolerance(const AreaLightShape& shape, glm::dvec3 place) const {
   const double largest = std::max({1.0, std::abs(place.x), std::abs(place.y), std::abs(place.z)});
   return 1e-4 * shape.radius() + 4e-6 * largest;
 }
 
 void Lights::find_touching() {
-  for (std::uint32_t i = 0; i < lamps_.size(); ++i) {
-    const LampShape& shape = lamps_[i].shape;
+  for (std::uint32_t i = 0; i < area_lights_.size(); ++i) {
+    const AreaLightShape& shape = area_lights_[i].shape;
     const double reach = shape.radius() + 2 * tolerance(shape, shape.centre());
-    tree_.near(shape.centre(), reach, [&](std::uint32_t other) { lamps_[i].touches_earlier |= other < i; });
+    tree_.for_each_near(shape.centre(), reach, [&](std::uint32_t other) { area_lights_[i].touches_earlier |= other < i; });
   }
 }
 
-std::optional<std::uint32_t> Lights::lamp_at(glm::dvec3 place) const {
+std::optional<std::uint32_t> Lights::area_light_at(glm::dvec3 place) const {
   std::optional<std::uint32_t> first;
   const double widest = 4e-6 * std::max({1.0, std::abs(place.x), std::abs(place.y), std::abs(place.z)});
   const auto consider = [&](std::uint32_t i) {
-    if (i >= lamps_.size() || (first && *first <= i)) return;
-    if (lamps_[i].shape.distance(place) <= tolerance(lamps_[i].shape, place)) first = i;
+    if (i >= area_lights_.size() || (first && *first <= i)) return;
+    if (area_lights_[i].shape.distance(place) <= tolerance(area_lights_[i].shape, place)) first = i;
   };
-  tree_.near(place, widest, consider);
+  tree_.for_each_near(place, widest, consider);
   return first;
 }
 
@@ -114,70 +114,70 @@ bool Lights::empty() const { return tree_.empty() && all_near_; }
 
 bool Lights::has_choice() const { return !all_near_ || tree_.size() > 1; }
 
-float Lights::directional_estimate(const Delta& delta, const LightQuery& query) const {
-  const float cosine = -glm::dot(query.normal, glm::vec3(delta.light.direction));
-  return luminance(glm::vec3(delta.light.intensity)) * std::max(0.0f, query.both_sides ? std::abs(cosine) : cosine);
+float Lights::directional_importance(const DeltaLight& delta, const LightSampleContext& context) const {
+  const float cosine = -glm::dot(context.normal, glm::vec3(delta.light.direction));
+  return luminance(glm::vec3(delta.light.intensity)) * std::max(0.0f, context.both_sides ? std::abs(cosine) : cosine);
 }
 
-Lights::Shares Lights::shares(const LightQuery& query) const {
+Lights::SelectionProbabilities Lights::selection_probabilities(const LightSampleContext& context) const {
   if (all_near_) return {1, 0, 0};
-  const float near = tree_.total(query), environment = environment_.estimate(query);
+  const float near = tree_.total_importance(context), environment = environment_.importance(context);
   float directional = 0;
-  for (const Delta& delta : directional_) directional += directional_estimate(delta, query);
+  for (const DeltaLight& delta : directional_) directional += directional_importance(delta, context);
   const float beyond = environment + directional;
   if (!(near + beyond > 0)) return {0, 0, 0};
   float share = near / (near + beyond);
-  if (near > 0 && beyond > 0) share = std::clamp(share, kLeastShare, 1 - kLeastShare);
+  if (near > 0 && beyond > 0) share = std::clamp(share, kMinShare, 1 - kMinShare);
   const float rest = beyond > 0 ? (1 - share) / beyond : 0;
   return {share, rest * environment, rest * directional};
 }
 
-LightSample Lights::sample(const LightQuery& query, float choice, glm::vec2 u) const {
-  const Shares share = shares(query);
+LightSample Lights::sample(const LightSampleContext& context, float choice, glm::vec2 u) const {
+  const SelectionProbabilities share = selection_probabilities(context);
   if (choice < share.near) {
-    const std::optional<LightTree::Choice> chosen =
-        tree_.choose(query, std::min(choice / share.near, 0x1.fffffep-1f));
+    const std::optional<LightTree::SampledLight> chosen =
+        tree_.sample(context, std::min(choice / share.near, 0x1.fffffep-1f));
     if (!chosen) return {};
-    const bool lamp = chosen->light < lamps_.size();
-    LightSample out = lamp ? sample_lamp(query, chosen->light, u)
-                           : sample_delta(query, near_deltas_[chosen->light - lamps_.size()]);
-    out.pdf *= share.near * chosen->probability;
+    const bool area_light = chosen->light < area_lights_.size();
+    LightSample out = area_light ? sample_area_light(context, chosen->light, u)
+                           : sample_delta(context, near_delta_lights_[chosen->light - area_lights_.size()]);
+    out.pdf *= share.near * chosen->pmf;
     return out;
   }
   choice -= share.near;
   if (share.environment > 0 && (choice < share.environment || !(share.directional > 0))) {
     LightSample out;
-    out.wi = environment_.sample(query, std::min(choice / share.environment, 0x1.fffffep-1f), u);
+    out.wi = environment_.sample(context, std::min(choice / share.environment, 0x1.fffffep-1f), u);
     out.radiance = environment_.radiance(out.wi);
-    out.pdf = share.environment * environment_.pdf(query, out.wi);
+    out.pdf = share.environment * environment_.pdf(context, out.wi);
     return out;
   }
   if (!(share.directional > 0)) return {};
-  LightSample out = sample_directional(query, std::max(0.0f, choice - share.environment) / share.directional);
+  LightSample out = sample_directional(context, std::max(0.0f, choice - share.environment) / share.directional);
   out.pdf *= share.directional;
   return out;
 }
 
-LightSample Lights::sample_lamp(const LightQuery& query, std::uint32_t index, glm::vec2 u) const {
-  const LampLight& lamp = lamps_[index];
-  const ShapeSample place = lamp.shape.sample(query.position, u);
+LightSample Lights::sample_area_light(const LightSampleContext& context, std::uint32_t index, glm::vec2 u) const {
+  const DiffuseAreaLight& area_light = area_lights_[index];
+  const ShapeSample place = area_light.shape.sample(context.position, u);
   if (!(place.pdf > 0)) return {};
-  if (lamp.touches_earlier && lamp_at(place.position) != index) return {};
-  const glm::dvec3 way = place.position - query.position;
+  if (area_light.touches_earlier && area_light_at(place.position) != index) return {};
+  const glm::dvec3 way = place.position - context.position;
   LightSample out;
   out.distance = glm::length(way);
   if (!(out.distance > 0)) return {};
   out.wi = glm::vec3(way / out.distance);
-  out.radiance = lamp.radiance;
+  out.radiance = area_light.radiance;
   out.pdf = static_cast<float>(place.pdf);
-  out.lamp_cosine = std::max(0.0f, -glm::dot(glm::vec3(place.normal), out.wi));
-  out.material = lamp.shape.lamp().material;
-  out.surface = lamp.shape.lamp().surface;
+  out.light_cosine = std::max(0.0f, -glm::dot(glm::vec3(place.normal), out.wi));
+  out.material = area_light.shape.area_light().material;
+  out.surface = area_light.shape.area_light().surface;
   return out;
 }
 
-LightSample Lights::sample_delta(const LightQuery& query, const Delta& delta) const {
-  const glm::dvec3 way = delta.light.position - query.position;
+LightSample Lights::sample_delta(const LightSampleContext& context, const DeltaLight& delta) const {
+  const glm::dvec3 way = delta.light.position - context.position;
   LightSample out;
   out.distance = glm::length(way);
   if (!(out.distance > 0)) return {};
@@ -192,13 +192,13 @@ LightSample Lights::sample_delta(const LightQuery& query, const Delta& delta) co
   return out;
 }
 
-LightSample Lights::sample_directional(const LightQuery& query, float choice) const {
+LightSample Lights::sample_directional(const LightSampleContext& context, float choice) const {
   float all = 0;
-  for (const Delta& delta : directional_) all += directional_estimate(delta, query);
+  for (const DeltaLight& delta : directional_) all += directional_importance(delta, context);
   float rest = choice * all;
   LightSample out;
-  for (const Delta& delta : directional_) {
-    const float own = directional_estimate(delta, query);
+  for (const DeltaLight& delta : directional_) {
+    const float own = directional_importance(delta, context);
     if (!(own > 0)) continue;
     out.wi = -glm::vec3(delta.light.direction);
     out.radiance = glm::vec3(delta.light.intensity);
@@ -210,18 +210,18 @@ LightSample Lights::sample_directional(const LightQuery& query, float choice) co
   return out;
 }
 
-float Lights::pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit) const {
-  if (surface >= has_lamps_.size() || !has_lamps_[surface]) return 0;
-  const std::optional<std::uint32_t> lamp = lamp_at(hit);
-  if (!lamp || lamps_[*lamp].shape.lamp().surface != surface) return 0;
-  const double pdf = lamps_[*lamp].shape.pdf(query.position, hit);
+float Lights::pdf_of_hit(const LightSampleContext& context, std::uint32_t surface, glm::dvec3 hit) const {
+  if (surface >= has_area_lights_.size() || !has_area_lights_[surface]) return 0;
+  const std::optional<std::uint32_t> area_light = area_light_at(hit);
+  if (!area_light || area_lights_[*area_light].shape.area_light().surface != surface) return 0;
+  const double pdf = area_lights_[*area_light].shape.pdf(context.position, hit);
   if (!(pdf > 0)) return 0;
-  return shares(query).near * tree_.probability(query, *lamp) * static_cast<float>(pdf);
+  return selection_probabilities(context).near * tree_.pmf(context, *area_light) * static_cast<float>(pdf);
 }
 
-float Lights::pdf_of_background(const LightQuery& query, glm::vec3 direction) const {
-  const float share = shares(query).environment;
-  return share > 0 ? share * environment_.pdf(query, direction) : 0;
+float Lights::pdf_of_background(const LightSampleContext& context, glm::vec3 direction) const {
+  const float share = selection_probabilities(context).environment;
+  return share > 0 ? share * environment_.pdf(context, direction) : 0;
 }
 
 }  // namespace fathom::runtime

@@ -1,13 +1,13 @@
 // The lights of a scene, and their sampling. Next-event estimation calls sample(). For a ray that hits a light by
 // itself, pdf_of_hit() and pdf_of_background() return the density with which sample() would have found the light.
 //
-// The lights are the graph's area lights (compiler::Lamp, compiler/analysis/lamps.h), the scene's point, spot and
+// The lights are the graph's area lights (compiler::AreaLight, compiler/analysis/area_lights.h), the scene's point, spot and
 // directional lights, and the environment beyond the scene (runtime/light/environment.h). Near lights and lights
 // beyond the scene are sampled in proportion to estimates of their irradiance, but each side at least one time in
 // four when there are both. A tree chooses among near lights (runtime/light/light_tree.h).
 //
-//     const LightQuery query{position, normal};
-//     const LightSample light = lights.sample(query, u0, {u1, u2});
+//     const LightSampleContext context{position, normal};
+//     const LightSample light = lights.sample(context, u0, {u1, u2});
 //     if (light.pdf > 0) ... BSDF, shadow ray ... radiance += throughput * f * light.radiance / light.pdf * weight;
 //
 // Sources: Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapter 9 (use of the
@@ -25,7 +25,7 @@
 
 #include "compiler/scene/compiled_scene.h"
 #include "runtime/light/environment.h"
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 #include "runtime/light/light_shapes.h"
 #include "runtime/light/light_tree.h"
 
@@ -40,7 +40,7 @@ struct LightSample {
   glm::vec3 radiance{0};
   float pdf = 0;          // per solid angle; delta: the probability of this light; 0: no sample
   bool delta = false;     // no ray hits this light
-  float lamp_cosine = 1;  // area lights: cosine between their normal and -wi
+  float light_cosine = 1;  // area lights: cosine between their normal and -wi
   std::uint32_t material = kNoMaterial, surface = kNoMaterial;  // area lights: indices into the scene's tables
 };
 
@@ -54,51 +54,51 @@ class Lights {
   // True if sample() uses `choice`.
   bool has_choice() const;
   // True if there are lights that no ray hits.
-  bool has_deltas() const { return !near_deltas_.empty() || !directional_.empty(); }
+  bool has_delta_lights() const { return !near_delta_lights_.empty() || !directional_.empty(); }
 
   // Samples a light by three numbers in [0,1). `distance` ends on the surface of the area light, which is part of the
-  // field, too. A shadow ray must stop short of that surface, by more at grazing angles (lamp_cosine).
-  LightSample sample(const LightQuery& query, float choice, glm::vec2 u) const;
+  // field, too. A shadow ray must stop short of that surface, by more at grazing angles (light_cosine).
+  LightSample sample(const LightSampleContext& context, float choice, glm::vec2 u) const;
 
   // Returns the density with which sample() samples the direction to `hit`, a point on surface number `surface` that
-  // a ray from `query` found. 0 if the point is on no area light, or on a part that is not sampled.
-  float pdf_of_hit(const LightQuery& query, std::uint32_t surface, glm::dvec3 hit) const;
+  // a ray from `context` found. 0 if the point is on no area light, or on a part that is not sampled.
+  float pdf_of_hit(const LightSampleContext& context, std::uint32_t surface, glm::dvec3 hit) const;
 
   glm::vec3 background(glm::vec3 direction) const { return environment_.radiance(direction); }
-  float pdf_of_background(const LightQuery& query, glm::vec3 direction) const;
+  float pdf_of_background(const LightSampleContext& context, glm::vec3 direction) const;
 
  private:
   // A point or spot light, or a directional light without an angle.
-  struct Delta {
+  struct DeltaLight {
     compiler::Light light;
     float cos_outer = -1, cos_inner = -1;  // of a spot's cone
   };
-  struct LampLight {
-    LampShape shape;
+  struct DiffuseAreaLight {
+    AreaLightShape shape;
     glm::vec3 radiance;
-    bool touches_earlier;  // its bounding ball meets that of an earlier lamp
+    bool touches_earlier;  // its bounding ball meets that of an earlier area light
   };
-  struct Shares {
+  struct SelectionProbabilities {
     float near, environment, directional;  // probabilities of sampling them
   };
 
-  void add_lamps(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds);
+  void add_area_lights(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds);
   void add_delta(const compiler::Light& light, std::vector<LightBounds>& bounds);
   void find_touching();
-  double tolerance(const LampShape& shape, glm::dvec3 place) const;
-  // Returns the lamp that a point of the lamps' surfaces belongs to, the first if several coincide there.
-  std::optional<std::uint32_t> lamp_at(glm::dvec3 place) const;
-  float directional_estimate(const Delta& delta, const LightQuery& query) const;
-  Shares shares(const LightQuery& query) const;
-  LightSample sample_lamp(const LightQuery& query, std::uint32_t lamp, glm::vec2 u) const;
-  LightSample sample_delta(const LightQuery& query, const Delta& delta) const;
-  LightSample sample_directional(const LightQuery& query, float choice) const;
+  double tolerance(const AreaLightShape& shape, glm::dvec3 place) const;
+  // Returns the area light that a point of the area lights' surfaces belongs to, the first if several coincide there.
+  std::optional<std::uint32_t> area_light_at(glm::dvec3 place) const;
+  float directional_importance(const DeltaLight& delta, const LightSampleContext& context) const;
+  SelectionProbabilities selection_probabilities(const LightSampleContext& context) const;
+  LightSample sample_area_light(const LightSampleContext& context, std::uint32_t area_light, glm::vec2 u) const;
+  LightSample sample_delta(const LightSampleContext& context, const DeltaLight& delta) const;
+  LightSample sample_directional(const LightSampleContext& context, float choice) const;
 
   Environment environment_;
-  std::vector<LampLight> lamps_;
-  std::vector<bool> has_lamps_;     // [surface]
-  std::vector<Delta> near_deltas_;  // in the tree numbered after the lamps
-  std::vector<Delta> directional_;
+  std::vector<DiffuseAreaLight> area_lights_;
+  std::vector<bool> has_area_lights_;     // [surface]
+  std::vector<DeltaLight> near_delta_lights_;  // in the tree numbered after the area lights
+  std::vector<DeltaLight> directional_;
   LightTree tree_;
   bool all_near_ = false;  // no light comes from beyond the scene
 };

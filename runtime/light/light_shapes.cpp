@@ -7,14 +7,14 @@
 #include <glm/matrix.hpp>
 
 #include "runtime/base/angle.h"
-#include "runtime/light/lamp_parts.h"
-#include "runtime/light/round_lamps.h"
-#include "runtime/light/seen_rectangle.h"
+#include "runtime/light/area_light_sampling.h"
+#include "runtime/light/curved_area_lights.h"
+#include "runtime/light/spherical_rectangle.h"
 
 namespace fathom::runtime {
 namespace {
 
-using compiler::Lamp;
+using compiler::AreaLight;
 using glm::dvec2;
 using glm::dvec3;
 
@@ -32,26 +32,26 @@ struct BoxFaces {
       parts.weights[static_cast<std::size_t>(i)] = 1 / (d2 * std::sqrt(d2) / flat + 1 / (2 * kPi));
     }
   }
-  static SeenRectangle face(dvec3 from, dvec3 half, int axis) {
+  static SphericalRectangle face(dvec3 from, dvec3 half, int axis) {
     const int j = (axis + 1) % 3, k = (axis + 2) % 3;
     return {-half[j] - from[j], half[j] - from[j], -half[k] - from[k], half[k] - from[k],
             std::abs(from[axis]) - half[axis]};
   }
-  Parts<3> parts;
+  DiscreteDistribution<3> parts;
 };
 
 ShapeSample sample_box(dvec3 from, dvec3 half, dvec2 u) {
   const BoxFaces faces(from, half);
   if (!(faces.parts.sum() > 0)) return {};
-  const std::size_t part = faces.parts.choose(u.x);
+  const std::size_t part = faces.parts.sample(u.x);
   const int axis = static_cast<int>(part), j = (axis + 1) % 3, k = (axis + 2) % 3;
-  const SeenRectangle::Place place = BoxFaces::face(from, half, axis).sample(u);
+  const SphericalRectangle::Sample place = BoxFaces::face(from, half, axis).sample(u);
   ShapeSample out;
   out.normal[axis] = from[axis] > 0 ? 1 : -1;
   out.position[axis] = out.normal[axis] * half[axis];
   out.position[j] = from[j] + place.at.x;
   out.position[k] = from[k] + place.at.y;
-  out.pdf = faces.parts.share(part) * place.pdf;
+  out.pdf = faces.parts.pmf(part) * place.pdf;
   return out;
 }
 
@@ -62,7 +62,7 @@ double box_pdf(dvec3 from, dvec3 half, dvec3 hit) {
   }
   if (!(std::abs(from[axis]) > half[axis]) || (from[axis] > 0) != (hit[axis] > 0)) return 0;
   const int across = (axis + 1) % 3;
-  return BoxFaces(from, half).parts.share(static_cast<std::size_t>(axis)) *
+  return BoxFaces(from, half).parts.pmf(static_cast<std::size_t>(axis)) *
          BoxFaces::face(from, half, axis).pdf(hit[across] - from[across]);
 }
 
@@ -70,11 +70,11 @@ double box_pdf(dvec3 from, dvec3 half, dvec3 hit) {
 
 double cross2(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-double quad_area(const Lamp& quad) {
+double quad_area(const AreaLight& quad) {
   return 0.5 * cross2(quad.corners[2] - quad.corners[0], quad.corners[3] - quad.corners[1]);
 }
 
-bool is_rectangle(const Lamp& quad) {
+bool is_rectangle(const AreaLight& quad) {
   constexpr double kTolerance = 1e-9;
   const std::array<dvec2, 4>& c = quad.corners;
   const dvec2 a = c[1] - c[0], b = c[3] - c[0];
@@ -83,33 +83,33 @@ bool is_rectangle(const Lamp& quad) {
          glm::length(c[2] - c[0] - a - b) <= kTolerance * std::sqrt(size2);
 }
 
-bool inside_quad(const Lamp& quad, dvec2 p) {
+bool inside_quad(const AreaLight& quad, dvec2 p) {
   for (std::size_t i = 0; i < 4; ++i) {
     if (cross2(quad.corners[(i + 1) % 4] - quad.corners[i], p - quad.corners[i]) < 0) return false;
   }
   return true;
 }
 
-// Returns the face towards `from`. The lamp's x axis lies along the first side.
-SeenRectangle face_of(const Lamp& quad, dvec3 from) {
+// Returns the face towards `from`. The area light's x axis lies along the first side.
+SphericalRectangle face_of(const AreaLight& quad, dvec3 from) {
   const dvec2 lo = quad.corners[0], hi = quad.corners[2];
   return {lo.x - from.x, hi.x - from.x, lo.y - from.y, hi.y - from.y, std::abs(from.z) - quad.radius};
 }
 
-ShapeSample sample_quad(const Lamp& quad, bool rectangle, dvec3 from, dvec2 u) {
+ShapeSample sample_quad(const AreaLight& quad, bool rectangle, dvec3 from, dvec2 u) {
   if (!(std::abs(from.z) > quad.radius)) return {};
   const double side = from.z > 0 ? 1 : -1;
   ShapeSample out{dvec3(0, 0, side * quad.radius), dvec3(0, 0, side)};
   if (rectangle) {
-    const SeenRectangle::Place place = face_of(quad, from).sample(u);
+    const SphericalRectangle::Sample place = face_of(quad, from).sample(u);
     out.position.x = from.x + place.at.x;
     out.position.y = from.y + place.at.y;
     out.pdf = place.pdf;
     return out;
   }
   const std::array<dvec2, 4>& c = quad.corners;
-  const Parts<2> halves{{cross2(c[1] - c[0], c[2] - c[0]), cross2(c[2] - c[0], c[3] - c[0])}};
-  const std::size_t half = halves.choose(u.x);
+  const DiscreteDistribution<2> halves{{cross2(c[1] - c[0], c[2] - c[0]), cross2(c[2] - c[0], c[3] - c[0])}};
+  const std::size_t half = halves.sample(u.x);
   // Samples a triangle uniformly: Turk, "Generating Random Points in Triangles", Graphics Gems, 1990.
   const double root = std::sqrt(u.x);
   const dvec2 place = (1 - root) * c[0] + root * (1 - u.y) * c[1 + half] + root * u.y * c[2 + half];
@@ -119,14 +119,14 @@ ShapeSample sample_quad(const Lamp& quad, bool rectangle, dvec3 from, dvec2 u) {
   return out;
 }
 
-double quad_pdf(const Lamp& quad, bool rectangle, dvec3 from, dvec3 hit) {
+double quad_pdf(const AreaLight& quad, bool rectangle, dvec3 from, dvec3 hit) {
   if (!(std::abs(from.z) > quad.radius) || (from.z > 0) != (hit.z > 0)) return 0;
   if (!inside_quad(quad, dvec2(hit))) return 0;
   if (!rectangle) return area_to_solid_angle({hit, dvec3(0, 0, from.z > 0 ? 1 : -1)}, from, quad_area(quad));
   return face_of(quad, from).pdf(hit.x - from.x);
 }
 
-double quad_distance(const Lamp& quad, dvec3 p) {
+double quad_distance(const AreaLight& quad, dvec3 p) {
   if (inside_quad(quad, dvec2(p))) return std::abs(std::abs(p.z) - quad.radius);
   double nearest2 = INFINITY;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -139,105 +139,105 @@ double quad_distance(const Lamp& quad, dvec3 p) {
 
 }  // namespace
 
-LampShape::LampShape(const Lamp& lamp) : lamp_(lamp) {
-  rectangle_ = lamp.shape == Lamp::Shape::Quad && is_rectangle(lamp);
+AreaLightShape::AreaLightShape(const AreaLight& area_light) : area_light_(area_light) {
+  rectangle_ = area_light.shape == AreaLight::Shape::Quad && is_rectangle(area_light);
 }
 
-dvec3 LampShape::to_local(dvec3 p) const { return glm::transpose(lamp_.rotation) * (p - lamp_.translation); }
+dvec3 AreaLightShape::to_local(dvec3 p) const { return glm::transpose(area_light_.rotation) * (p - area_light_.translation); }
 
-ShapeSample LampShape::sample(dvec3 from, glm::vec2 u) const {
+ShapeSample AreaLightShape::sample(dvec3 from, glm::vec2 u) const {
   const dvec3 local = to_local(from);
   ShapeSample out;
-  switch (lamp_.shape) {
-    case Lamp::Shape::Sphere:
-      out = sample_ball(local, dvec3(0), lamp_.radius, dvec2(u));
+  switch (area_light_.shape) {
+    case AreaLight::Shape::Sphere:
+      out = sample_ball(local, dvec3(0), area_light_.radius, dvec2(u));
       break;
-    case Lamp::Shape::Box:
-      out = sample_box(local, lamp_.half_size, dvec2(u));
+    case AreaLight::Shape::Box:
+      out = sample_box(local, area_light_.half_size, dvec2(u));
       break;
-    case Lamp::Shape::Cylinder:
-      out = sample_cylinder(lamp_, local, dvec2(u));
+    case AreaLight::Shape::Cylinder:
+      out = sample_cylinder(area_light_, local, dvec2(u));
       break;
-    case Lamp::Shape::Capsule:
-      out = sample_capsule(lamp_, local, dvec2(u));
+    case AreaLight::Shape::Capsule:
+      out = sample_capsule(area_light_, local, dvec2(u));
       break;
-    case Lamp::Shape::Quad:
-      out = sample_quad(lamp_, rectangle_, local, dvec2(u));
+    case AreaLight::Shape::Quad:
+      out = sample_quad(area_light_, rectangle_, local, dvec2(u));
   }
-  out.position = lamp_.rotation * out.position + lamp_.translation;
-  out.normal = lamp_.rotation * out.normal;
+  out.position = area_light_.rotation * out.position + area_light_.translation;
+  out.normal = area_light_.rotation * out.normal;
   return out;
 }
 
-double LampShape::pdf(dvec3 from, dvec3 hit) const {
+double AreaLightShape::pdf(dvec3 from, dvec3 hit) const {
   const dvec3 p = to_local(from), q = to_local(hit);
-  switch (lamp_.shape) {
-    case Lamp::Shape::Sphere:
-      return glm::dot(q, p - q) > 0 ? ball_pdf(p, dvec3(0), lamp_.radius) : 0;
-    case Lamp::Shape::Box:
-      return box_pdf(p, lamp_.half_size, q);
-    case Lamp::Shape::Cylinder:
-      return cylinder_pdf(lamp_, p, q);
-    case Lamp::Shape::Capsule:
-      return capsule_pdf(lamp_, p, q);
-    case Lamp::Shape::Quad:
-      return quad_pdf(lamp_, rectangle_, p, q);
+  switch (area_light_.shape) {
+    case AreaLight::Shape::Sphere:
+      return glm::dot(q, p - q) > 0 ? ball_pdf(p, dvec3(0), area_light_.radius) : 0;
+    case AreaLight::Shape::Box:
+      return box_pdf(p, area_light_.half_size, q);
+    case AreaLight::Shape::Cylinder:
+      return cylinder_pdf(area_light_, p, q);
+    case AreaLight::Shape::Capsule:
+      return capsule_pdf(area_light_, p, q);
+    case AreaLight::Shape::Quad:
+      return quad_pdf(area_light_, rectangle_, p, q);
   }
   return 0;
 }
 
-double LampShape::distance(dvec3 place) const {
+double AreaLightShape::distance(dvec3 place) const {
   const dvec3 p = to_local(place);
-  switch (lamp_.shape) {
-    case Lamp::Shape::Sphere:
-      return std::abs(glm::length(p) - lamp_.radius);
-    case Lamp::Shape::Box: {
-      const dvec3 out = glm::abs(p) - lamp_.half_size;
+  switch (area_light_.shape) {
+    case AreaLight::Shape::Sphere:
+      return std::abs(glm::length(p) - area_light_.radius);
+    case AreaLight::Shape::Box: {
+      const dvec3 out = glm::abs(p) - area_light_.half_size;
       return std::abs(glm::length(glm::max(out, 0.0)) + std::min(std::max({out.x, out.y, out.z}), 0.0));
     }
-    case Lamp::Shape::Cylinder:
-      return cylinder_distance(lamp_, p);
-    case Lamp::Shape::Capsule:
-      return std::abs(capsule_distance(lamp_, p));
-    case Lamp::Shape::Quad:
-      return quad_distance(lamp_, p);
+    case AreaLight::Shape::Cylinder:
+      return cylinder_distance(area_light_, p);
+    case AreaLight::Shape::Capsule:
+      return std::abs(capsule_distance(area_light_, p));
+    case AreaLight::Shape::Quad:
+      return quad_distance(area_light_, p);
   }
   return INFINITY;
 }
 
-double LampShape::radius() const {
-  switch (lamp_.shape) {
-    case Lamp::Shape::Sphere:
-      return lamp_.radius;
-    case Lamp::Shape::Box:
-      return glm::length(lamp_.half_size);
-    case Lamp::Shape::Cylinder:
-      return std::sqrt(sqr(lamp_.radius) + sqr(lamp_.half_height));
-    case Lamp::Shape::Capsule:
-      return lamp_.radius + lamp_.half_height;
-    case Lamp::Shape::Quad: {
+double AreaLightShape::radius() const {
+  switch (area_light_.shape) {
+    case AreaLight::Shape::Sphere:
+      return area_light_.radius;
+    case AreaLight::Shape::Box:
+      return glm::length(area_light_.half_size);
+    case AreaLight::Shape::Cylinder:
+      return std::sqrt(sqr(area_light_.radius) + sqr(area_light_.half_height));
+    case AreaLight::Shape::Capsule:
+      return area_light_.radius + area_light_.half_height;
+    case AreaLight::Shape::Quad: {
       double farthest = 0;
-      for (const dvec2 corner : lamp_.corners) farthest = std::max(farthest, glm::length(corner));
-      return farthest + lamp_.radius;
+      for (const dvec2 corner : area_light_.corners) farthest = std::max(farthest, glm::length(corner));
+      return farthest + area_light_.radius;
     }
   }
   return 0;
 }
 
-double LampShape::area() const {
-  const double r = lamp_.radius, h = lamp_.half_height;
-  const dvec3 s = lamp_.half_size;
-  switch (lamp_.shape) {
-    case Lamp::Shape::Sphere:
+double AreaLightShape::area() const {
+  const double r = area_light_.radius, h = area_light_.half_height;
+  const dvec3 s = area_light_.half_size;
+  switch (area_light_.shape) {
+    case AreaLight::Shape::Sphere:
       return 4 * kPi * r * r;
-    case Lamp::Shape::Box:
+    case AreaLight::Shape::Box:
       return 8 * (s.x * s.y + s.y * s.z + s.z * s.x);
-    case Lamp::Shape::Cylinder:
+    case AreaLight::Shape::Cylinder:
       return 2 * kPi * r * (r + 2 * h);
-    case Lamp::Shape::Capsule:
+    case AreaLight::Shape::Capsule:
       return 4 * kPi * r * (r + h);
-    case Lamp::Shape::Quad:
-      return quad_area(lamp_);
+    case AreaLight::Shape::Quad:
+      return quad_area(area_light_);
   }
   return 0;
 }

@@ -3,7 +3,7 @@
 //
 //   sphere    the cone around it: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting
 //             Calculations", 1996
-//   box       the faces towards the shading point, each nearly by solid angle (seen_rectangle.h)
+//   box       the faces towards the shading point, each nearly by solid angle (spherical_rectangle.h)
 //   quad      the face on the shading point's side: a rectangle nearly by solid angle, another quad by area. Its
 //             rounded edges are not sampled
 //   cylinder  the cap and the part of the side that face the shading point, by area
@@ -20,11 +20,11 @@
 
 namespace fathom::runtime {
 
-class LampShape {
+class AreaLightShape {
  public:
-  explicit LampShape(const compiler::Lamp& lamp);
+  explicit AreaLightShape(const compiler::AreaLight& area_light);
 
-  // Samples a point of the lamp for the shading point `from`. No sample from within the lamp.
+  // Samples a point of the area light for the shading point `from`. No sample from within the area light.
   ShapeSample sample(glm::dvec3 from, glm::vec2 u) const;
   // Returns the density with which sample() samples `hit`, a point of the surface that `from` sees. 0 if sample()
   // never returns it.
@@ -32,17 +32,17 @@ class LampShape {
   // Returns the distance from any point to the whole surface, sampled or not.
   double distance(glm::dvec3 place) const;
 
-  glm::dvec3 centre() const { return lamp_.translation; }
-  glm::dvec3 normal() const { return lamp_.rotation[2]; }  // of a quad
-  double radius() const;                                   // of a ball around the centre that contains the lamp
+  glm::dvec3 centre() const { return area_light_.translation; }
+  glm::dvec3 normal() const { return area_light_.rotation[2]; }  // of a quad
+  double radius() const;                                   // of a ball around the centre that contains the area light
   double area() const;                                     // of the whole surface; for a quad, of one face
-  const compiler::Lamp& lamp() const { return lamp_; }
+  const compiler::AreaLight& area_light() const { return area_light_; }
 
  private:
   glm::dvec3 to_local(glm::dvec3 p) const;
 
-  compiler::Lamp lamp_;
-  bool rectangle_ = false;  // the lamp is a quad and a rectangle
+  compiler::AreaLight area_light_;
+  bool rectangle_ = false;  // the area light is a quad and a rectangle
 };
 
 }  // namespace fathom::runtime

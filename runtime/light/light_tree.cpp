@@ -19,9 +19,9 @@ float cosine_of_difference(float cos_a, float cos_b) {
   return cos_a * cos_b + sine(cos_a) * sine(cos_b);
 }
 
-// kSlack: for lights that shine past the edge of their cone by rounding. kLeastFacing: keeps lights at the edge of
+// kSlack: for lights that shine past the edge of their cone by rounding. kMinFacing: keeps lights at the edge of
 // their cone from being sampled too rarely.
-constexpr float kSlack = 1e-4f, kLeastFacing = 0.05f;
+constexpr float kSlack = 1e-4f, kMinFacing = 0.05f;
 
 bool everywhere(const LightBounds& light) { return light.cos_spread <= -1; }
 
@@ -65,8 +65,8 @@ LightBounds merge(std::span<const std::uint32_t> members, const std::vector<Ligh
 
 }  // namespace
 
-float estimate(const LightBounds& light, const LightQuery& query) {
-  const glm::vec3 way(light.centre - query.position);
+float importance(const LightBounds& light, const LightSampleContext& context) {
+  const glm::vec3 way(light.centre - context.position);
   const auto radius = static_cast<float>(light.radius);
   const float d2 = glm::dot(way, way), r2 = radius * radius;
   if (!(std::max(d2, r2) > 0)) return 0;
@@ -74,8 +74,8 @@ float estimate(const LightBounds& light, const LightQuery& query) {
   if (d2 <= r2) return strength;
   const glm::vec3 wi = way / std::sqrt(d2);
   const float cos_ball = std::sqrt(1 - r2 / d2);
-  float arriving = glm::dot(query.normal, wi);
-  if (query.both_sides) arriving = std::abs(arriving);
+  float arriving = glm::dot(context.normal, wi);
+  if (context.both_sides) arriving = std::abs(arriving);
   arriving = cosine_of_difference(arriving, cos_ball);
   if (!(arriving > 0)) return 0;
   if (everywhere(light)) return strength * arriving;
@@ -83,7 +83,7 @@ float estimate(const LightBounds& light, const LightQuery& query) {
   if (light.two_sided) leaving = std::abs(leaving);
   leaving = cosine_of_difference(cosine_of_difference(leaving, light.cos_spread), cos_ball);
   if (leaving < light.cos_emission - kSlack) return 0;
-  return strength * arriving * std::max(leaving, kLeastFacing);
+  return strength * arriving * std::max(leaving, kMinFacing);
 }
 
 LightTree::LightTree(std::vector<LightBounds> lights) : lights_(std::move(lights)) {
@@ -96,11 +96,11 @@ LightTree::LightTree(std::vector<LightBounds> lights) : lights_(std::move(lights
 }
 
 // The recursion's depth is the logarithm of the number of lights.
-void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf) {
+void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t max_in_leaf) {
   const std::span<std::uint32_t> members = std::span(order_).subspan(first, count);
   const std::size_t self = nodes_.size();
   nodes_.push_back({merge(members, lights_), first, count});
-  if (count <= most_in_leaf) return;
+  if (count <= max_in_leaf) return;
   compiler::Box centres;
   for (const std::uint32_t member : members)
     centres = unite(centres, {lights_[member].centre, lights_[member].centre});
@@ -110,71 +110,71 @@ void LightTree::build(std::uint32_t first, std::uint32_t count, std::size_t most
   std::nth_element(members.begin(), members.begin() + half, members.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::tuple(lights_[a].centre[axis], a) < std::tuple(lights_[b].centre[axis], b);
   });
-  build(first, half, most_in_leaf);
-  nodes_[self].second = static_cast<std::uint32_t>(nodes_.size());
-  build(first + half, count - half, most_in_leaf);
+  build(first, half, max_in_leaf);
+  nodes_[self].second_child = static_cast<std::uint32_t>(nodes_.size());
+  build(first + half, count - half, max_in_leaf);
 }
 
-std::optional<LightTree::Choice> LightTree::choose(const LightQuery& query, float u) const {
+std::optional<LightTree::SampledLight> LightTree::sample(const LightSampleContext& context, float u) const {
   if (empty()) return std::nullopt;
   double rest = static_cast<double>(u);
-  float probability = 1;
+  float pmf = 1;
   std::uint32_t at = 0;
-  while (nodes_[at].second != 0) {
-    const float left = estimate(nodes_[at + 1].bounds, query),
-                right = estimate(nodes_[nodes_[at].second].bounds, query);
+  while (nodes_[at].second_child != 0) {
+    const float left = importance(nodes_[at + 1].bounds, context),
+                right = importance(nodes_[nodes_[at].second_child].bounds, context);
     if (!(left + right > 0)) return std::nullopt;
     const float share = left / (left + right);
     const bool go_left = rest < static_cast<double>(share);
     const float taken = go_left ? share : 1 - share;
     rest = (go_left ? rest : rest - static_cast<double>(share)) / static_cast<double>(taken);
-    probability *= taken;
-    at = go_left ? at + 1 : nodes_[at].second;
+    pmf *= taken;
+    at = go_left ? at + 1 : nodes_[at].second_child;
   }
   const Node& leaf = nodes_[at];
-  std::array<float, std::max(kFewLights, kLeafLights)> estimates;
+  std::array<float, std::max(kFewLights, kLeafLights)> importances;
   float all = 0;
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    estimates[i] = estimate(lights_[order_[leaf.first + i]], query);
-    all += estimates[i];
+    importances[i] = importance(lights_[order_[leaf.first + i]], context);
+    all += importances[i];
   }
   if (!(all > 0)) return std::nullopt;
   double sought = rest * static_cast<double>(all);
-  std::optional<Choice> last;
+  std::optional<SampledLight> last;
   for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    if (!(estimates[i] > 0)) continue;
-    last = Choice{order_[leaf.first + i], probability * (estimates[i] / all)};
-    if (sought < static_cast<double>(estimates[i])) break;
-    sought -= static_cast<double>(estimates[i]);
+    if (!(importances[i] > 0)) continue;
+    last = SampledLight{order_[leaf.first + i], pmf * (importances[i] / all)};
+    if (sought < static_cast<double>(importances[i])) break;
+    sought -= static_cast<double>(importances[i]);
   }
   return last;
 }
 
-float LightTree::probability(const LightQuery& query, std::uint32_t light) const {
+float LightTree::pmf(const LightSampleContext& context, std::uint32_t light) const {
   const std::uint32_t slot = slot_[light];
-  float probability = 1;
+  float pmf = 1;
   std::uint32_t at = 0;
-  while (nodes_[at].second != 0) {
-    const float left = estimate(nodes_[at + 1].bounds, query),
-                right = estimate(nodes_[nodes_[at].second].bounds, query);
+  while (nodes_[at].second_child != 0) {
+    const float left = importance(nodes_[at + 1].bounds, context),
+                right = importance(nodes_[nodes_[at].second_child].bounds, context);
     if (!(left + right > 0)) return 0;
     const float share = left / (left + right);
-    const bool go_left = slot < nodes_[nodes_[at].second].first;
-    probability *= go_left ? share : 1 - share;
-    at = go_left ? at + 1 : nodes_[at].second;
+    const bool go_left = slot < nodes_[nodes_[at].second_child].first;
+    pmf *= go_left ? share : 1 - share;
+    at = go_left ? at + 1 : nodes_[at].second_child;
   }
-  const float all = total_of(nodes_[at], query);
-  return all > 0 ? probability * (estimate(lights_[light], query) / all) : 0;
+  const float all = total_importance_of(nodes_[at], context);
+  return all > 0 ? pmf * (importance(lights_[light], context) / all) : 0;
 }
 
-float LightTree::total(const LightQuery& query) const {
+float LightTree::total_importance(const LightSampleContext& context) const {
   if (empty()) return 0;
-  return nodes_[0].second == 0 ? total_of(nodes_[0], query) : estimate(nodes_[0].bounds, query);
+  return nodes_[0].second_child == 0 ? total_importance_of(nodes_[0], context) : importance(nodes_[0].bounds, context);
 }
 
-float LightTree::total_of(const Node& leaf, const LightQuery& query) const {
+float LightTree::total_importance_of(const Node& leaf, const LightSampleContext& context) const {
   float sum = 0;
-  for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) sum += estimate(lights_[order_[i]], query);
+  for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) sum += importance(lights_[order_[i]], context);
   return sum;
 }
 

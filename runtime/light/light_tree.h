@@ -2,7 +2,7 @@
 // a ball around the light and a cone around the directions that it faces.
 //
 // Up to kFewLights lights are all estimated. More lights go into a binary tree, whose nodes are estimated like lights
-// and which choose() descends at random.
+// and which sample() descends at random.
 //
 // Source: Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; without
 // the adaptive splitting, and with nodes divided at the middle light along the longest axis instead of by cost.
@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 
 namespace fathom::runtime {
 
@@ -33,8 +33,8 @@ struct LightBounds {
   float intensity = 0;     // luminance: irradiance of a surface that faces the light, times the distance squared
 };
 
-// Returns an estimate of the irradiance at the query. 0 only if no light can arrive.
-float estimate(const LightBounds& light, const LightQuery& query);
+// Returns an estimate of the irradiance at the shading point. 0 only if no light can arrive.
+float importance(const LightBounds& light, const LightSampleContext& context);
 
 class LightTree {
  public:
@@ -42,32 +42,32 @@ class LightTree {
 
   explicit LightTree(std::vector<LightBounds> lights);
 
-  struct Choice {
+  struct SampledLight {
     std::uint32_t light;
-    float probability;
+    float pmf;
   };
   // Chooses a light by a number in [0,1). Returns nothing if no light can arrive.
-  std::optional<Choice> choose(const LightQuery& query, float u) const;
-  // Returns the probability with which choose() returns `light`.
-  float probability(const LightQuery& query, std::uint32_t light) const;
+  std::optional<SampledLight> sample(const LightSampleContext& context, float u) const;
+  // Returns the probability with which sample() returns `light`.
+  float pmf(const LightSampleContext& context, std::uint32_t light) const;
   // Returns an estimate of the irradiance by all lights together.
-  float total(const LightQuery& query) const;
+  float total_importance(const LightSampleContext& context) const;
   bool empty() const { return lights_.empty(); }
   std::size_t size() const { return lights_.size(); }
 
   // Calls `use` with every light whose ball is within `reach` of `place`.
   template <class Use>
-  void near(glm::dvec3 place, double reach, const Use& use) const;
+  void for_each_near(glm::dvec3 place, double reach, const Use& use) const;
 
  private:
-  // A node's lights are order_[first, first + count). The children of an inner node are the next node and `second`.
+  // A node's lights are order_[first, first + count). The children of an inner node are the next node and `second_child`.
   struct Node {
     LightBounds bounds;
     std::uint32_t first, count;
-    std::uint32_t second = 0;  // 0: a leaf
+    std::uint32_t second_child = 0;  // 0: a leaf
   };
-  void build(std::uint32_t first, std::uint32_t count, std::size_t most_in_leaf);
-  float total_of(const Node& leaf, const LightQuery& query) const;
+  void build(std::uint32_t first, std::uint32_t count, std::size_t max_in_leaf);
+  float total_importance_of(const Node& leaf, const LightSampleContext& context) const;
 
   std::vector<LightBounds> lights_;
   std::vector<std::uint32_t> order_, slot_;  // slot_[order_[i]] = i
@@ -75,7 +75,7 @@ class LightTree {
 };
 
 template <class Use>
-void LightTree::near(glm::dvec3 place, double reach, const Use& use) const {
+void LightTree::for_each_near(glm::dvec3 place, double reach, const Use& use) const {
   const auto touches = [&](const LightBounds& bounds) {
     return glm::length(bounds.centre - place) <= bounds.radius + reach;
   };
@@ -86,8 +86,8 @@ void LightTree::near(glm::dvec3 place, double reach, const Use& use) const {
     const std::uint32_t at = pending[--count];
     const Node& node = nodes_[at];
     if (!touches(node.bounds)) continue;
-    if (node.second != 0) {
-      pending[count++] = node.second;
+    if (node.second_child != 0) {
+      pending[count++] = node.second_child;
       pending[count++] = at + 1;
       continue;
     }

@@ -7,7 +7,7 @@
 
 #include "runtime/base/angle.h"
 #include "runtime/base/elementary.h"
-#include "runtime/sampling/sphere_table.h"
+#include "runtime/sampling/piecewise_constant_sphere.h"
 #include "vm/number/real.h"
 
 namespace fathom::runtime {
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSkyUnit = 10;              // kcd/m^2 per unit of radiance
 constexpr double kSunOutside = 133.1;        // klx
-constexpr float kLeastZenithCosine = 1e-4f;  // of the angle from the zenith, by which Perez' formula divides
+constexpr float kMinZenithCosine = 1e-4f;  // of the angle from the zenith, by which Perez' formula divides
 
 // Source: IEC 61966-2-1:1999.
 glm::vec3 xyY_to_srgb(float x, float y, float Y) {
@@ -102,7 +102,7 @@ Sky::Sky(const compiler::Background::Sky& sky) : sun_(sky.sun), scale_(static_ca
 }
 
 glm::vec3 Sky::above(glm::vec3 direction) const {
-  const float cos_theta = std::max(direction.y, kLeastZenithCosine);
+  const float cos_theta = std::max(direction.y, kMinZenithCosine);
   const float cos_gamma = std::clamp(glm::dot(direction, sun_), -1.0f, 1.0f);
   const auto gamma = static_cast<float>(vm::real::acos(static_cast<double>(cos_gamma)));
   const auto at = [&](std::size_t i) { return perez_[i](cos_theta, gamma, cos_gamma); };

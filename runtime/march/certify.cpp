@@ -2,13 +2,13 @@
 
 namespace fathom::runtime {
 
-Certified certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const Stretch& stretch,
+CertifiedResult certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const RayInterval& interval,
                   RealScratch& scratch) {
-  Search search(field, origin, direction, side, stretch);
+  CertifiedSearch search(field, origin, direction, side, interval);
   while (!search.done()) {
     std::uint64_t instructions = 0;
     const double f = field.evaluate(search.point(), scratch, instructions);
-    search.give(f, instructions, scratch);
+    search.supply(f, instructions, scratch);
   }
   return search.result();
 }

@@ -63,8 +63,8 @@ HWY_INLINE void clip_register(RayBlock& rays, std::size_t i, const compiler::Box
   }
   hn::StoreU(hn::Sub(end, begin), d, rays.length + i);
   hn::StoreU(begin, d, rays.entry + i);
-  const V fate = hn::IfThenElse(past, code(Clip::Past), code(Clip::Within));
-  hn::StoreU(hn::IfThenElse(valid, fate, code(Clip::Invalid)), d, rays.fate + i);
+  const V result = hn::IfThenElse(past, code(ClipResult::Past), code(ClipResult::Within));
+  hn::StoreU(hn::IfThenElse(valid, result, code(ClipResult::Invalid)), d, rays.result + i);
 }
 
 void clip_rays(RayBlock& rays, std::size_t first, const compiler::Box& box, double far) {

@@ -14,7 +14,7 @@ namespace fathom::runtime {
 
 // Result of clipping a ray: some of the ray is within the box, or the ray passes the box, or the ray is invalid (a
 // direction without length, NaN, or an infinite origin or direction).
-enum class Clip : std::uint8_t { Within, Past, Invalid };
+enum class ClipResult : std::uint8_t { Within, Past, Invalid };
 
 // Rays as a structure of arrays, at most kCapacity of them.
 struct RayBlock {
@@ -27,7 +27,7 @@ struct RayBlock {
   double length[kPadded] = {};  // from the origin; after clipping, of the part within the box
   // Before clipping: Ray::clear. After: distance from the ray's origin to the start of the part within the box.
   double entry[kPadded] = {};
-  double fate[kPadded] = {};  // after clipping: a Clip
+  double result[kPadded] = {};  // after clipping: a Clip
   float slope[kCapacity];
   std::int8_t side[kCapacity];
   std::uint32_t id[kCapacity];
@@ -45,7 +45,7 @@ struct RayBlock {
     id[i] = ray_id;
   }
   // Only after clipping.
-  Clip what_became_of(std::size_t i) const { return static_cast<Clip>(fate[i]); }
+  ClipResult clip_result(std::size_t i) const { return static_cast<ClipResult>(result[i]); }
 };
 
 // Clips the rays from `first` on. Directions become unit vectors, except that a unit vector to float precision stays

@@ -138,7 +138,7 @@ template <class N, class L, class S>
 HWY_INLINE N distance_error(const LaneView<N, L>& lanes, N f, const LaneRules<S>& rules) {
   const N place = max(abs(lanes.get(kX)), max(abs(lanes.get(kY)), abs(lanes.get(kZ))));
   const N scale = max(number<N>(1), max(place, abs(f)));
-  return N::broadcast(rules.unit) * (scale + N::broadcast(rules.magnitude));
+  return N::broadcast(rules.unit) * (scale + N::broadcast(rules.cancellation));
 }
 
 }  // namespace fathom::runtime::HWY_NAMESPACE

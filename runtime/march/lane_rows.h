@@ -18,7 +18,7 @@
 
 namespace fathom::runtime {
 
-enum class LaneVerdict : std::uint8_t { Going, Hit, Miss, Invalid, Certify, OutOfSteps };
+enum class LaneVerdict : std::uint8_t { Active, Hit, Miss, Invalid, Certify, OutOfSteps };
 enum class LanePhase : std::uint8_t { Start, Emerge, Walk, Cross, Retreat, Refine };
 
 // The rows of a lane's state. Every row costs time, because a step reads and writes most rows. So the last rows, from
@@ -85,7 +85,7 @@ template <class S>
 struct LaneRules {
   S lipschitz, inv_lipschitz;
   S band;        // distance below which a lane tries to cross the surface, scene units
-  S magnitude;   // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
+  S cancellation;   // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
   S unit;        // d_f at unit scale
   S resolution;  // relative width at which a bracket is done
   Method method;

@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "runtime/march/lanes.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 #include "runtime/march/tiered-inl.h"
-#include "runtime/march/traced-inl.h"
+#include "runtime/march/sphere_tracing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
@@ -37,22 +37,22 @@ HWY_INLINE N load_number(const S* from) {
 }
 
 template <class N, bool kConvex, class S>
-std::size_t tiered(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t tiered(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
   return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
     Tiered<N, S, kConvex> step(lanes, i, rules);
-    return step.run(load_number<N>(at.f + i), load_number<N>((kConvex ? at.convex : at.f) + i), rules);
+    return step.run(load_number<N>(at.f + i), load_number<N>((kConvex ? at.convexity : at.f) + i), rules);
   });
 }
 
 template <class Step, class N, class S>
-std::size_t traced(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t traced(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
   return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
     return trace<Step, N>(lanes, i, rules, load_number<N>(at.f + i));
   });
 }
 
 template <class N, class S>
-std::size_t advance(Lanes<S>& lanes, std::size_t count, Samples<S> at, const LaneRules<S>& rules,
+std::size_t advance(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules,
                     LaneNumbers& ended) {
   switch (rules.method) {
     case Method::Sphere:
@@ -62,16 +62,16 @@ std::size_t advance(Lanes<S>& lanes, std::size_t count, Samples<S> at, const Lan
     case Method::Automatic:
       return traced<AutomaticStep, N>(lanes, count, at, rules, ended);
     default:
-      return at.convex != nullptr ? tiered<N, true>(lanes, count, at, rules, ended)
+      return at.convexity != nullptr ? tiered<N, true>(lanes, count, at, rules, ended)
                                   : tiered<N, false>(lanes, count, at, rules, ended);
   }
 }
 
-std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, Samples<float> at, const LaneRules<float>& rules,
+std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, FieldSamples<float> at, const LaneRules<float>& rules,
                         LaneNumbers& ended) {
   return advance<Batch>(lanes, count, at, rules, ended);
 }
-std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, Samples<double> at, const LaneRules<double>& rules,
+std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, FieldSamples<double> at, const LaneRules<double>& rules,
                         LaneNumbers& ended) {
   return advance<Real>(lanes, count, at, rules, ended);
 }
@@ -88,11 +88,11 @@ HWY_EXPORT(batch_lanes);
 
 std::size_t register_lanes() { return HWY_DYNAMIC_DISPATCH(batch_lanes)(); }
 
-std::size_t advance(Lanes<float>& lanes, std::size_t count, Samples<float> at, const LaneRules<float>& rules,
+std::size_t advance(Lanes<float>& lanes, std::size_t count, FieldSamples<float> at, const LaneRules<float>& rules,
                     LaneNumbers& ended) {
   return HWY_DYNAMIC_DISPATCH(advance_f32)(lanes, count, at, rules, ended);
 }
-std::size_t advance(Lanes<double>& lanes, std::size_t count, Samples<double> at, const LaneRules<double>& rules,
+std::size_t advance(Lanes<double>& lanes, std::size_t count, FieldSamples<double> at, const LaneRules<double>& rules,
                     LaneNumbers& ended) {
   return HWY_STATIC_DISPATCH(advance_f64)(lanes, count, at, rules, ended);
 }

@@ -6,7 +6,7 @@ namespace fathom::runtime {
 namespace {
 
 // A marcher that searches every ray in double from its start.
-class Certifier final : public Marcher {
+class CertifiedMarcher final : public Marcher {
  public:
   using Marcher::Marcher;
 
@@ -26,12 +26,12 @@ class Certifier final : public Marcher {
 }  // namespace
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {
-  if (marching.method == Method::Certified) return std::make_unique<Certifier>(field);
+  if (marching.method == Method::Certified) return std::make_unique<CertifiedMarcher>(field);
   if (marching.precision == Precision::Double) return std::make_unique<Stream<double>>(field, marching);
   return std::make_unique<Stream<float>>(field, marching);
 }
 
-MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
+MarchCounters march_each(const Field& field, std::span<const Ray> rays, const Marching& marching,
                      const std::function<void(const RayHit&)>& use) {
   const std::unique_ptr<Marcher> marcher = make_marcher(field, marching);
   std::vector<RayHit> ray_hits;
@@ -51,7 +51,7 @@ MarchResult march(const Field& field, std::span<const Ray> rays, const Marching&
   MarchResult result;
   result.ray_hits.resize(rays.size());
   result.counters =
-      follow(field, rays, marching, [&](const RayHit& ray_hit) { result.ray_hits[ray_hit.id] = ray_hit; });
+      march_each(field, rays, marching, [&](const RayHit& ray_hit) { result.ray_hits[ray_hit.id] = ray_hit; });
   return result;
 }
 

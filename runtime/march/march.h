@@ -9,7 +9,7 @@
 //   certify in double: the few rays that float cannot decide, collected until there are enough to be searched side by
 //           side (certify.h)
 //
-// Every ray ends as Hit, Miss, Contact or Invalid. No ray runs out of steps.
+// Every ray ends as Hit, Miss, NearMiss or Invalid. No ray runs out of steps.
 //
 //     const auto marcher = make_marcher(field);
 //     marcher->add(id, ray);            // as long as there is room()
@@ -36,7 +36,7 @@ namespace fathom::runtime {
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching = {});
 
 // Follows all `rays`, whose ids are their indices, and calls `use` with each result.
-MarchCounters follow(const Field& field, std::span<const Ray> rays, const Marching& marching,
+MarchCounters march_each(const Field& field, std::span<const Ray> rays, const Marching& marching,
                      const std::function<void(const RayHit&)>& use);
 
 // The results of all rays, in order: ray_hits[i].id == i.

@@ -9,17 +9,17 @@ namespace {
 
 // Minimum number of rays searched side by side: two registers of doubles, and few enough not to be missed in the
 // stream.
-constexpr std::size_t kSideBySide = 16;
+constexpr std::size_t kMinSearchBatch = 16;
 
 }  // namespace
 
-int Marcher::capacity_for(const Field& field) { return field.regions ? kMostRays : kMostRays / 2; }
+int Marcher::capacity_for(const Field& field) { return field.regions ? kMaxRays : kMaxRays / 2; }
 
 // With regions every point has its own program, so that evaluating many points at once gains nothing.
 Marcher::Marcher(const Field& field)
-    : field_(field), capacity_(capacity_for(field)), side_by_side_(field.regions ? 1 : kSideBySide) {}
+    : field_(field), capacity_(capacity_for(field)), min_batch_(field.regions ? 1 : kMinSearchBatch) {}
 
-void Marcher::refuse() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
+void Marcher::fail_full() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
 
 void Marcher::advance() {
   if (waiting_.count > 0) begin_waiting();
@@ -33,44 +33,44 @@ void Marcher::begin_waiting() {
   clipped_ = waiting_.count;
 }
 
-void Marcher::certify_from(const ClippedRay& ray, int side, const Stretch& stretch, std::uint32_t evaluations,
+void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                            std::uint64_t instructions) {
   searched_.push_back(
-      {Search(field_, ray.origin, ray.direction, side, stretch), ray.entry, ray.id, evaluations, instructions});
+      {CertifiedSearch(field_, ray.origin, ray.direction, side, interval), ray.entry, ray.id, evaluations, instructions});
 }
 
 // Searches as long as enough rays are left to fill the machine's registers, or no other rays are under way.
 void Marcher::search() {
-  if (searched_.size() < side_by_side_ && (live_ > 0 || searched_.empty())) return;
-  const Stage before = clock_.enter(Stage::Resolve);
+  if (searched_.size() < min_batch_ && (live_ > 0 || searched_.empty())) return;
+  const Stage before = clock_.enter(Stage::Certify);
   do {
-    search_once();
-  } while (searched_.size() >= side_by_side_);
+    evaluate_searches();
+  } while (searched_.size() >= min_batch_);
   clock_.enter(before);
 }
 
 // Evaluates the field once for every searched ray.
-void Marcher::search_once() {
+void Marcher::evaluate_searches() {
   const std::size_t count = searched_.size();
-  for (std::vector<double>& coordinates : question_) coordinates.resize(count);
-  answer_.resize(count);
-  price_.resize(count);
+  for (std::vector<double>& coordinates : points_) coordinates.resize(count);
+  values_.resize(count);
+  instructions_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const glm::dvec3 point = searched_[i].search.point();
-    for (int axis = 0; axis < 3; ++axis) question_[axis][i] = point[axis];
+    for (int axis = 0; axis < 3; ++axis) points_[axis][i] = point[axis];
   }
-  field_.evaluate({question_[0].data(), question_[1].data(), question_[2].data()}, count, answer_.data(),
-                  price_.data(), real_scratch_);
+  field_.evaluate({points_[0].data(), points_[1].data(), points_[2].data()}, count, values_.data(),
+                  instructions_.data(), real_scratch_);
   for (std::size_t i = count; i-- > 0;) {
-    searched_[i].search.give(answer_[i], price_[i], real_scratch_);
+    searched_[i].search.supply(values_[i], instructions_[i], real_scratch_);
     if (searched_[i].search.done()) end_search(i);
   }
 }
 
 // Reports searched ray i. The last searched ray takes its place.
 void Marcher::end_search(std::size_t i) {
-  const Searched& ray = searched_[i];
-  const Certified& found = ray.search.result();
+  const SearchedRay& ray = searched_[i];
+  const CertifiedResult& found = ray.search.result();
   if (found.status == RayHit::Status::Invalid) counters_.note_invalid(ray.search.point());
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;

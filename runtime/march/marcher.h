@@ -1,5 +1,5 @@
 // The base of every marcher. A marcher takes rays, clips them to the scene's bound (clip.h), advances them, searches
-// some in double (search.h), and returns their RayHits. A derived class advances the rays: stream.h.
+// some in double (certified_search.h), and returns their RayHits. A derived class advances the rays: stream.h.
 //
 // march.h makes the marcher of a method and shows its use. Not a public header: march.h is.
 // Tested by: tests/runtime/march/march_test.cpp
@@ -14,21 +14,21 @@
 #include "runtime/field/field.h"
 #include "runtime/march/clip.h"
 #include "runtime/march/ray.h"
-#include "runtime/march/search.h"
+#include "runtime/march/certified_search.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
 
 class Marcher {
  public:
-  static constexpr int kMostRays = RayBlock::kCapacity;
+  static constexpr int kMaxRays = RayBlock::kCapacity;
 
   explicit Marcher(const Field& field);
   virtual ~Marcher() = default;
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  // Maximum number of rays under way, up to kMostRays: high with regions, so that many points need one skeleton.
+  // Maximum number of rays under way, up to kMaxRays: high with regions, so that many points need one template.
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
   int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }
@@ -37,7 +37,7 @@ class Marcher {
   // Requires room() > 0.
   void add(std::uint32_t id, const Ray& ray) {
     if (room() <= 0) [[unlikely]]
-      refuse();
+      fail_full();
     ++counters_.rays;
     waiting_.push(id, ray);
   }
@@ -81,10 +81,10 @@ class Marcher {
   }
   // True if the i-th of `rays` comes within the bound. Otherwise reports that it does not.
   bool enters(const RayBlock& rays, std::size_t i) {
-    const Clip fate = rays.what_became_of(i);
-    if (fate == Clip::Within) return true;
-    if (fate == Clip::Past) ++counters_.clipped;
-    report(rays.id[i], fate == Clip::Past ? RayHit::Status::Miss : RayHit::Status::Invalid);
+    const ClipResult clipped = rays.clip_result(i);
+    if (clipped == ClipResult::Within) return true;
+    if (clipped == ClipResult::Past) ++counters_.clipped;
+    report(rays.id[i], clipped == ClipResult::Past ? RayHit::Status::Miss : RayHit::Status::Invalid);
     return false;
   }
   // Adds a RayHit, constructed in place from its fields, in order.
@@ -95,7 +95,7 @@ class Marcher {
     counters_.instructions += ray_hits_.back().instructions;
   }
   // Hands a ray that is no longer live to the search in double, after `evaluations` in float.
-  void certify_from(const ClippedRay& ray, int side, const Stretch& stretch, std::uint32_t evaluations,
+  void certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                     std::uint64_t instructions);
 
   const Field& field_;
@@ -115,23 +115,23 @@ class Marcher {
       case RayHit::Status::Miss:
         ++counters_.misses;
         break;
-      case RayHit::Status::Contact:
-        ++counters_.contacts;
+      case RayHit::Status::NearMiss:
+        ++counters_.near_misses;
         break;
       case RayHit::Status::Invalid:
         ++counters_.invalid;
         break;
     }
   }
-  [[noreturn]] static void refuse();
+  [[noreturn]] static void fail_full();
   void begin_waiting();
   void search();
-  void search_once();
+  void evaluate_searches();
   void end_search(std::size_t i);
 
   // A ray that is being searched in double.
-  struct Searched {
-    Search search;
+  struct SearchedRay {
+    CertifiedSearch search;
     double entry;  // ClippedRay::entry
     std::uint32_t id;
     std::uint32_t evaluations;  // in float
@@ -140,11 +140,11 @@ class Marcher {
 
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
-  const std::size_t side_by_side_;  // minimum number of rays worth a search
-  std::vector<Searched> searched_;
+  const std::size_t min_batch_;  // minimum number of rays worth a search
+  std::vector<SearchedRay> searched_;
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].
-  std::vector<double> question_[3], answer_;
-  std::vector<std::uint64_t> price_;  // [ray] instructions of the evaluation
+  std::vector<double> points_[3], values_;
+  std::vector<std::uint64_t> instructions_;  // [ray] instructions of the evaluation
   std::vector<RayHit> ray_hits_;
 };
 

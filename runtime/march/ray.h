@@ -19,8 +19,8 @@ struct Ray {
 
 // The result of following a ray: where it hit, or the reason why it did not.
 struct RayHit {
-  // Contact: a miss that came nearer to a surface than double resolves.
-  enum class Status : std::uint8_t { Hit, Miss, Contact, Invalid };
+  // NearMiss: a miss that came nearer to a surface than double resolves.
+  enum class Status : std::uint8_t { Hit, Miss, NearMiss, Invalid };
   std::uint32_t id;
   Status status;
   std::int8_t side = 1;            // +1: the ray travelled outside, -1: inside a solid

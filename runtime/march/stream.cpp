@@ -12,7 +12,7 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   rules.lipschitz = static_cast<S>(field.lipschitz);
   rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
   rules.band = static_cast<S>(field.band);
-  rules.magnitude = static_cast<S>(field.magnitude);
+  rules.cancellation = static_cast<S>(field.cancellation);
   // A double keeps 29 more bits, and the rounding of constants to float does not affect it.
   rules.unit =
       kSingle ? static_cast<S>(kDistanceError) : static_cast<S>(static_cast<double>(kDistanceError) * 0x1p-29);
@@ -34,11 +34,11 @@ S round_down(double value) {
 constexpr double kFirstBackoff = 2;
 // Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
 // in tiered-inl.h).
-constexpr double kVagueness = 0x1p-14;
+constexpr double kBracketMargin = 0x1p-14;
 
 // Number of lanes for a field without regions: a block of the machine.
 constexpr int kBlock = 256;
-static_assert(Lanes<float>::kCapacity <= kMostPoints);
+static_assert(Lanes<float>::kCapacity <= kMaxPoints);
 
 }  // namespace
 
@@ -47,28 +47,28 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
     : Marcher(field),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
-      seeded_(!info(rules_.method).uses_epsilon),
-      most_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
-      knows_convex_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.knows_convex()),
+      takes_slope_hint_(!info(rules_.method).uses_epsilon),
+      max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
+      use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
-  while (rays.count > 0 && live_ < most_lanes_) {
+  while (rays.count > 0 && live_ < max_lanes_) {
     const std::size_t i = --rays.count;
-    if (enters(rays, i)) take_up(rays, i);
+    if (enters(rays, i)) start_lane(rays, i);
   }
 }
 
 template <class S>
-void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
+void Stream<S>::start_lane(const RayBlock& rays, std::size_t i) {
   ++live_;
   std::size_t lane = lanes_used_;
-  if (holes_.empty()) {
+  if (free_lanes_.empty()) {
     ++lanes_used_;
   } else {
-    lane = holes_.back();
-    holes_.pop_back();
+    lane = free_lanes_.back();
+    free_lanes_.pop_back();
   }
   S* const first = &lanes_->row[0][lane];
   const auto put = [&](int row, S value) { first[row * static_cast<int>(Lanes<S>::kStride)] = value; };
@@ -81,8 +81,8 @@ void Stream<S>::take_up(const RayBlock& rays, std::size_t i) {
   for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
   put(kTMax, round_down<S>(rays.length[i]));
   put(kSide, rays.side[i]);
-  put(kM, seeded_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
-  put(seeded_ ? int{kBackoff} : int{kOverstepped}, seeded_ ? S(kFirstBackoff) : S(1));
+  put(kM, takes_slope_hint_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
+  put(takes_slope_hint_ ? int{kBackoff} : int{kOverstepped}, takes_slope_hint_ ? S(kFirstBackoff) : S(1));
   set_clipped_ray(clipped_rays_[lane], rays, i);
   instructions_[lane] = 0;
 }
@@ -92,7 +92,7 @@ void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
   const auto count = static_cast<std::size_t>(live_);
   const vm::Points points{row[kX], row[kY], row[kZ]};
-  if (knows_convex_) {
+  if (use_convexity_) {
     return vm::evaluate_convex(*field_.distance, points, count, distance_.data(), convex_.data(), workspace_);
   }
   field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
@@ -110,26 +110,26 @@ void Stream<double>::evaluate() {
 }
 
 template <class S>
-void Stream<S>::close_holes() {
-  for (const std::size_t hole : holes_) {
+void Stream<S>::compact_lanes() {
+  for (const std::size_t free_lane : free_lanes_) {
     const std::size_t last = --lanes_used_;
-    if (hole == last) continue;
-    for (auto& row : lanes_->row) row[hole] = row[last];
-    clipped_rays_[hole] = clipped_rays_[last];
-    instructions_[hole] = instructions_[last];
+    if (free_lane == last) continue;
+    for (auto& row : lanes_->row) row[free_lane] = row[last];
+    clipped_rays_[free_lane] = clipped_rays_[last];
+    instructions_[free_lane] = instructions_[last];
   }
-  holes_.clear();
+  free_lanes_.clear();
 }
 
 template <class S>
 void Stream<S>::step() {
-  close_holes();
+  compact_lanes();
   evaluate();
   const std::size_t count = static_cast<std::size_t>(live_);
   counters_.evaluations += count;
   counters_.lanes += (count + register_lanes_ - 1) / register_lanes_ * register_lanes_;
   counters_.region_far = scratch_.counters.far, counters_.region_programs = scratch_.counters.specialised;
-  const Samples<S> at{distance_.data(), knows_convex_ ? convex_.data() : nullptr};
+  const FieldSamples<S> at{distance_.data(), use_convexity_ ? convex_.data() : nullptr};
   LaneNumbers ended;
   for (std::size_t i = runtime::advance(*lanes_, count, at, rules_, ended); i-- > 0;) finish(ended[i]);
 }
@@ -146,10 +146,10 @@ void Stream<S>::finish(std::size_t i) {
     report(ray.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
   };
   --live_;
-  holes_.push_back(i);
+  free_lanes_.push_back(i);
   switch (static_cast<LaneVerdict>(number(kVerdict))) {
     case LaneVerdict::Certify:
-      return certify_from(ray, side, what_is_left(i), evaluations, instructions);
+      return certify_from(ray, side, undecided_interval(i), evaluations, instructions);
     case LaneVerdict::Hit:
       return report_as(RayHit::Status::Hit,
                        static_cast<float>(info(rules_.method).uses_epsilon ? rules_.epsilon : number(kWidth)),
@@ -168,11 +168,11 @@ void Stream<S>::finish(std::size_t i) {
 // Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins
 // with the bracket, widened by the uncertainty.
 template <class S>
-Stretch Stream<S>::what_is_left(std::size_t i) const {
+RayInterval Stream<S>::undecided_interval(std::size_t i) const {
   const auto number = [&](auto row) { return static_cast<double>(lanes_->row[row][i]); };
   const double length = clipped_rays_[i].length;
   if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {number(kT), length, 0};
-  const double slack = std::max(kVagueness * number(kTHi), static_cast<double>(field_.band));
+  const double slack = std::max(kBracketMargin * number(kTHi), static_cast<double>(field_.band));
   return {std::max(0.0, number(kTLo) - slack), length, number(kTHi) + slack};
 }
 

@@ -22,25 +22,25 @@ class Stream final : public Marcher {
   static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
 
   void begin(RayBlock& rays) override;
-  void take_up(const RayBlock& rays, std::size_t i);
+  void start_lane(const RayBlock& rays, std::size_t i);
   void step() override;
-  void close_holes();
+  void compact_lanes();
   void evaluate();
   void finish(std::size_t lane);
-  Stretch what_is_left(std::size_t lane) const;
+  RayInterval undecided_interval(std::size_t lane) const;
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
-  const bool seeded_;     // rays begin with Ray::slope, unlike those of the baseline methods
-  const int most_lanes_;  // maximum number in use
-  const bool knows_convex_;
+  const bool takes_slope_hint_;     // rays begin with Ray::slope, unlike those of the baseline methods
+  const int max_lanes_;  // maximum number in use
+  const bool use_convexity_;
   const std::size_t register_lanes_;             // points per register; each evaluation fills whole registers
   std::array<ClippedRay, kLanes> clipped_rays_;  // [lane]
   alignas(64) std::array<S, kLanes> distance_;   // [lane]
-  alignas(64) std::array<S, kLanes> convex_;     // [lane]; only if knows_convex_
+  alignas(64) std::array<S, kLanes> convex_;     // [lane]; only if use_convexity_
   // Lanes whose ray has ended, in descending order. A new ray or the last lane fills them.
-  std::vector<std::size_t> holes_;
-  std::size_t lanes_used_ = 0;  // including the holes
+  std::vector<std::size_t> free_lanes_;
+  std::size_t lanes_used_ = 0;  // including the free ones
   RegionScratch scratch_;
   std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
 };

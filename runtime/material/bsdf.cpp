@@ -46,22 +46,22 @@ BsdfSample Bsdf::sample_transparent(float lobe) const {
   if (lobe < fresnel(cos_o, eta_)) return {.wi = reflect_about(wo_, normal_), .weight = glm::vec3(1)};
   return {.wi = refract_through(wo_, normal_, eta_),
           .weight = color_ / (eta_ * eta_),
-          .through = true,
+          .is_transmission = true,
           .eta_scale = eta_ * eta_};
 }
 
 BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
-  const Principled::Draw draw = layers_->principled.draw(lobe, u);
+  const Principled::Sample local_sample = layers_->principled.sample(lobe, u);
   BsdfSample sample{
-      .wi = layers_->frame.to_world(draw.wi), .through = draw.through, .straight = draw.same_medium && draw.delta};
-  if (draw.through && !draw.same_medium) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
-  if (draw.delta) {
-    if (draw.same_medium) sample.wi = -wo_;  // bit for bit
-    sample.weight = draw.weight;
+      .wi = layers_->frame.to_world(local_sample.wi), .is_transmission = local_sample.is_transmission, .is_null = local_sample.keeps_medium && local_sample.delta};
+  if (local_sample.is_transmission && !local_sample.keeps_medium) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
+  if (local_sample.delta) {
+    if (local_sample.keeps_medium) sample.wi = -wo_;  // bit for bit
+    sample.weight = local_sample.weight;
     return sample;
   }
   // A facet may send light to the wrong side of the surface, which absorbs this light.
-  if ((draw.wi.z < 0) != draw.through) return sample;
+  if ((local_sample.wi.z < 0) != local_sample.is_transmission) return sample;
   const BsdfValue value = evaluate(sample.wi);
   if (value.pdf > 0 && !black(value.f)) {
     sample.weight = value.f / value.pdf;
@@ -70,7 +70,7 @@ BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
   return sample;
 }
 
-glm::vec3 Bsdf::straight_through() const { return layers_ ? layers_->principled.straight_through() : glm::vec3(0); }
+glm::vec3 Bsdf::null_transmission() const { return layers_ ? layers_->principled.null_transmission() : glm::vec3(0); }
 
 BsdfValue Bsdf::evaluate(glm::vec3 wi) const {
   if (layers_) return layers_->principled.evaluate(layers_->frame.to_local(wi));

@@ -30,9 +30,9 @@ struct BsdfSample {
   glm::vec3 wi{0};
   glm::vec3 weight{0};   // f |cos| / pdf; black: absorbed
   float pdf = 0;         // of wi over all lobes, per solid angle; 0 for a mirror or a clear pane
-  bool through = false;  // wi is on the other side of the surface
+  bool is_transmission = false;  // wi is on the other side of the surface
   // Passed through unbent, with no more than a tint: through a hole by opacity, or a smooth thin wall.
-  bool straight = false;
+  bool is_null = false;
   float eta_scale = 1;  // weight * eta_scale is free of the scaling of radiance
 };
 
@@ -45,8 +45,8 @@ class Bsdf {
   BsdfSample sample(float lobe, glm::vec2 u) const;  // three uniform numbers in [0,1)
   BsdfValue evaluate(glm::vec3 wi) const;            // without mirrors and clear panes
   // Returns the part of the light from -wo that continues straight to wo: the mean of sample()'s weights, counted
-  // only if straight. A ray towards a light may continue behind the surface and bring this part of the light.
-  glm::vec3 straight_through() const;
+  // only if is_null. A ray towards a light may continue behind the surface and bring this part of the light.
+  glm::vec3 null_transmission() const;
   bool is_delta() const;   // true if evaluate() is black everywhere
   bool has_lobes() const;  // true if sample() uses `lobe`
 

@@ -1,4 +1,4 @@
-// The reflectance of a boundary, and the directions of reflected and refracted light.
+// The reflectance of an interface, and the directions of reflected and refracted light.
 //
 // Directions are unit vectors away from the surface, and the normal is on wo's side. `eta` is the index of refraction
 // of the far side relative to wo's side.
@@ -28,24 +28,24 @@ inline glm::vec3 refract_through(glm::vec3 wo, glm::vec3 normal, float eta) {
 // Returns the reflectance of a dielectric for unpolarised light that arrives at the cosine `cos_i` and is refracted
 // to the cosine `cos_t`, both in [0,1].
 // Source: Fresnel's equations, as in Born and Wolf, "Principles of Optics", 7th ed. 1999, section 1.5.2.
-inline float fresnel_between(float cos_i, float cos_t, float eta) {
+inline float fresnel_reflectance(float cos_i, float cos_t, float eta) {
   const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
   const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// Returns 1 - fresnel_between(), with full precision where almost no light passes.
-inline float passed_between(float cos_i, float cos_t, float eta) {
+// Returns 1 - fresnel_reflectance(), with full precision where almost no light passes.
+inline float fresnel_transmittance(float cos_i, float cos_t, float eta) {
   const float parallel = eta * cos_i + cos_t, perpendicular = cos_i + eta * cos_t;
   return 2 * eta * cos_i * cos_t * (1 / (parallel * parallel) + 1 / (perpendicular * perpendicular));
 }
 
-// Returns fresnel_between() when only the cosine in [0,1] on the side of the incident light is known. 1 if no light
+// Returns fresnel_reflectance() when only the cosine in [0,1] on the side of the incident light is known. 1 if no light
 // passes (total internal reflection).
 inline float fresnel(float cos_i, float eta) {
   const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
   if (sin2_t >= 1) return 1;
-  return fresnel_between(cos_i, std::sqrt(1 - sin2_t), eta);
+  return fresnel_reflectance(cos_i, std::sqrt(1 - sin2_t), eta);
 }
 
 // Returns the reflectance of a pane, with all reflections between its two sides: R + T^2 R + T^2 R^3 + ...

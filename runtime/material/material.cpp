@@ -35,7 +35,7 @@ void put_transmission(const MaterialNumbers& n, MaterialType type, MaterialPoint
 // Closes the holes of a material that fills a body: a path that came in by a hole would leave by refraction, brighter
 // than it came.
 void close(MaterialPoint& point) {
-  if (point.fills()) point.opacity = 1;
+  if (point.has_interior()) point.opacity = 1;
 }
 
 MaterialPoint to_point(const MaterialNumbers& n, MaterialType type, bool thin_walled) {
@@ -77,20 +77,20 @@ constexpr float kEdge = (6.0f * 6 * 6 * 6 * 6) / (7.0f * 7 * 7 * 7 * 7);
 }  // namespace
 
 // Light crosses the coat once, so that the tint is the square root of coat_color.
-glm::vec3 MaterialPoint::emitted() const {
+glm::vec3 MaterialPoint::emitted_radiance() const {
   if (coat_weight == 0) return emission * opacity;
   return emission * opacity * glm::sqrt(glm::mix(glm::vec3(1), coat_color, coat_weight));
 }
 
-MaterialPoint typical_point(const compiler::Material& material) {
+MaterialPoint untextured_point(const compiler::Material& material) {
   return to_point(material, material.type, material.thin_walled);
 }
 
 Materials::Materials(const compiler::CompiledScene& scene)
-    : scene_(&scene), placed_(compiler::in_object_space(scene.materials, scene.textures)) {
+    : scene_(&scene), uses_object_space_(compiler::in_object_space(scene.materials, scene.textures)) {
   for (const compiler::Material& m : scene.materials) {
-    points_.push_back(typical_point(m));
-    pass_straight_ |= m.thin_walled || points_.back().passes_straight() ||
+    points_.push_back(untextured_point(m));
+    any_null_transmission_ |= m.thin_walled || points_.back().has_null_transmission() ||
                       std::any_of(m.textured.begin(), m.textured.end(), may_open);
   }
 }
@@ -169,7 +169,7 @@ glm::vec3 albedo_of(const MaterialPoint& m) {
   glm::vec3 color = m.base_color;
   if (m.type == MaterialType::Principled)
     color = color * (1 - m.transmission) + m.transmission_color * m.transmission;
-  return glm::min(color + m.emitted(), glm::vec3(1));
+  return glm::min(color + m.emitted_radiance(), glm::vec3(1));
 }
 
 }  // namespace fathom::runtime

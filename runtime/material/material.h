@@ -33,20 +33,20 @@ struct MaterialPoint {
 #include "compiler/scene/material_parameters.def"
 
   // Returns the radiance that leaves the surface to both sides: the opaque part emits, through the coat.
-  glm::vec3 emitted() const;
-  // transmits(): true if a path may get through the surface. fills(): true if the path is then in a medium of this
+  glm::vec3 emitted_radiance() const;
+  // transmits(): true if a path may get through the surface. has_interior(): true if the path is then in a medium of this
   // index.
-  bool transmits() const { return passes_light() || opacity < 1; }
-  bool fills() const { return passes_light() && !thin_walled; }
-  // True if light may continue straight through the surface (Bsdf::straight_through).
-  bool passes_straight() const { return opacity < 1 || (passes_light() && thin_walled); }
+  bool transmits() const { return is_transmissive() || opacity < 1; }
+  bool has_interior() const { return is_transmissive() && !thin_walled; }
+  // True if light may continue straight through the surface (Bsdf::null_transmission).
+  bool has_null_transmission() const { return opacity < 1 || (is_transmissive() && thin_walled); }
 
  private:
-  bool passes_light() const { return type == MaterialType::Transparent || transmission > 0; }
+  bool is_transmissive() const { return type == MaterialType::Transparent || transmission > 0; }
 };
 
 // Returns the material without its textures, with stand-ins for textured parameters.
-MaterialPoint typical_point(const compiler::Material& material);
+MaterialPoint untextured_point(const compiler::Material& material);
 
 // Mixes all parameters linearly, t in [0,1]. At t <= 0 or NaN the result is a, and at t >= 1 b. Two materials of one
 // type keep the type, otherwise both become principled.
@@ -71,14 +71,14 @@ class Materials {
   MaterialPoint at(std::uint32_t material, glm::dvec3 position, glm::dvec3 place, vm::Workspace& workspace) const;
 
   // Returns the material without its textures, with stand-ins for textured parameters.
-  const MaterialPoint& typical(std::uint32_t material) const { return points_[material]; }
-  bool varies(std::uint32_t material) const { return !scene_->materials[material].textured.empty(); }
+  const MaterialPoint& untextured(std::uint32_t material) const { return points_[material]; }
+  bool is_textured(std::uint32_t material) const { return !scene_->materials[material].textured.empty(); }
   // True if the material varies in the coordinates of the node.
-  bool placed(std::uint32_t material) const { return placed_[material]; }
+  bool uses_object_space(std::uint32_t material) const { return uses_object_space_[material]; }
   // True if light may come from the material at some point.
   bool emits(std::uint32_t material) const { return compiler::emits(scene_->materials[material]); }
   // True if light may continue straight through any of the materials.
-  bool pass_straight() const { return pass_straight_; }
+  bool any_null_transmission() const { return any_null_transmission_; }
   // Among solids that overlap, the one of the highest priority determines the medium.
   int priority(std::uint32_t material) const { return scene_->materials[material].priority; }
 
@@ -94,8 +94,8 @@ class Materials {
 
   const compiler::CompiledScene* scene_;
   std::vector<MaterialPoint> points_;  // [material]
-  std::vector<bool> placed_;           // [material]
-  bool pass_straight_ = false;
+  std::vector<bool> uses_object_space_;           // [material]
+  bool any_null_transmission_ = false;
 };
 
 glm::vec3 albedo_of(const MaterialPoint& m);

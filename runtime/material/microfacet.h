@@ -1,4 +1,4 @@
-// A rough boundary as a crowd of tiny mirrors, its facets: the GGX distribution of their normals, masking and
+// A rough interface as a crowd of tiny mirrors, its facets: the GGX distribution of their normals, masking and
 // shadowing, and sampling of the facets that wo sees.
 //
 // Local space: the surface's normal is z, and wo lies above. Densities are per solid angle.
@@ -37,13 +37,13 @@ class Ggx {
   float g2_by_4_cos(float cos_o, float cos_i) const { return 0.5f / (cos_i * slope(cos_o) + cos_o * slope(cos_i)); }
 
   // Returns G2 / G1(wo) of light that a facet sends from cos_o, in [0,1], to cos_i. 0 if cos_i is below the surface.
-  float seen_on_leaving(float cos_o, float cos_i) const {
+  float g2_over_g1(float cos_o, float cos_i) const {
     return cos_i > 0 ? 4 * cos_i * g2_by_4_cos(cos_o, cos_i) / g1_by_cos(cos_o) : 0;
   }
 
   // Samples the normal of a facet that wo sees. Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical
   // Caps", 2023.
-  glm::vec3 sample_visible(glm::vec3 wo, glm::vec2 u) const {
+  glm::vec3 sample_visible_normal(glm::vec3 wo, glm::vec2 u) const {
     const glm::vec3 view = glm::normalize(glm::vec3(alpha_ * wo.x, alpha_ * wo.y, wo.z));
     const float z = (1 - u.x) * (1 + view.z) - view.z;
     const float radius = std::sqrt(std::fmax(1 - z * z, 0.0f));
@@ -51,10 +51,10 @@ class Ggx {
     const glm::vec3 half(radius * angle.cos + view.x, radius * angle.sin + view.y, z + view.z);
     return glm::normalize(glm::vec3(alpha_ * half.x, alpha_ * half.y, std::fmax(half.z, 1e-7f)));
   }
-  float visible_pdf(glm::vec3 wo, glm::vec3 m) const {
+  float visible_normal_pdf(glm::vec3 wo, glm::vec3 m) const {
     return g1_by_cos(wo.z) * d(m) * std::fmax(glm::dot(wo, m), 0.0f);
   }
-  // Returns the density of wi, the mirror image of wo about a normal sampled by sample_visible().
+  // Returns the density of wi, the mirror image of wo about a normal sampled by sample_visible_normal().
   float reflection_pdf(glm::vec3 wo, glm::vec3 m) const { return 0.25f * g1_by_cos(wo.z) * d(m); }
 
  private:

@@ -17,15 +17,15 @@ class OrenNayar {
   OrenNayar(glm::vec3 color, float roughness)
       : color_(color), roughness_(roughness), share_(1 / (1 + kFirst * roughness)) {
     const float average = share_ * (1 + kSecond * roughness);
-    const glm::vec3 between = color * color * average / (1.0f - color * (1 - average));
-    between_ = average < 1 ? between / (1 - average) : glm::vec3(0);
+    const glm::vec3 multiple = color * color * average / (1.0f - color * (1 - average));
+    multiple_scattering_ = average < 1 ? multiple / (1 - average) : glm::vec3(0);
   }
 
   // Returns pi f. Local space: the normal is z, and both directions lie above the surface.
   glm::vec3 operator()(glm::vec3 wo, glm::vec3 wi) const {
     const float s = glm::dot(wo, wi) - wo.z * wi.z;
-    const float once = share_ * (1 + roughness_ * (s > 0 ? s / std::max(wo.z, wi.z) : s));
-    return color_ * once + between_ * ((1 - albedo(wo.z)) * (1 - albedo(wi.z)));
+    const float single = share_ * (1 + roughness_ * (s > 0 ? s / std::max(wo.z, wi.z) : s));
+    return color_ * single + multiple_scattering_ * ((1 - albedo(wo.z)) * (1 - albedo(wi.z)));
   }
 
  private:
@@ -39,7 +39,7 @@ class OrenNayar {
   static constexpr float kPi = 3.14159265358979324f;
   static constexpr float kFirst = 0.5f - 2 / (3 * kPi), kSecond = 2.0f / 3 - 28 / (15 * kPi);
 
-  glm::vec3 color_{0}, between_{0};
+  glm::vec3 color_{0}, multiple_scattering_{0};
   float roughness_ = 0, share_ = 1;
 };
 

@@ -15,8 +15,8 @@ constexpr std::uint64_t kReferenceSeed = 1u << 20;
 constexpr double kDarkShare = 0.01;
 constexpr double kTrimmed = 0.001;
 
-Channels channels_of(const Film& film) {
-  Channels channels;
+PixelValues channels_of(const Film& film) {
+  PixelValues channels;
   for (int y = 0; y < film.height(); ++y) {
     for (int x = 0; x < film.width(); ++x) {
       const glm::dvec3 radiance = film.means(x, y).radiance;
@@ -30,7 +30,7 @@ struct RelativeError {
   double all, trimmed;  // `trimmed` is without the worst 0.1 %
 };
 
-RelativeError relative_error(const Channels& picture, const Channels& reference) {
+RelativeError relative_error(const PixelValues& picture, const PixelValues& reference) {
   double mean = 0;
   for (const double value : reference) mean += value / static_cast<double>(reference.size());
   std::vector<double> errors;
@@ -52,17 +52,17 @@ RelativeError relative_error(const Channels& picture, const Channels& reference)
 struct Gathered {
   ImagePoint point;
   std::vector<double> seconds, errors, trimmed;
-  Channels sum;
+  PixelValues sum;
 
-  void add(const compiler::CompiledScene& scene, RenderOptions options, const Channels& reference) {
-    options.marching = point.way.marching;
-    options.sampler = point.way.sampler;
-    options.light_sampling = point.way.light_sampling;
+  void add(const compiler::CompiledScene& scene, RenderOptions options, const PixelValues& reference) {
+    options.marching = point.variant.marching;
+    options.sampler = point.variant.sampler;
+    options.light_sampling = point.variant.light_sampling;
     options.spp = point.spp;
     const double start = thread_seconds();
     const RenderResult result = render(scene, options);
     seconds.push_back(thread_seconds() - start);
-    const Channels picture = channels_of(result.film);
+    const PixelValues picture = channels_of(result.film);
     const RelativeError error = relative_error(picture, reference);
     errors.push_back(error.all);
     trimmed.push_back(error.trimmed);
@@ -70,14 +70,14 @@ struct Gathered {
     for (std::size_t i = 0; i < picture.size(); ++i) sum[i] += picture[i];
   }
 
-  ImageMeasurement row(const Channels& reference) const {
+  ImageMeasurement row(const PixelValues& reference) const {
     ImageMeasurement row;
-    const Marching& marching = point.way.marching;
+    const Marching& marching = point.variant.marching;
     row.method = info(marching.method).name;
     row.precision = marching.precision == Precision::Double ? "f64" : "f32";
     row.eps = info(marching.method).uses_epsilon ? marching.epsilon : 0;
-    row.sampler = compiler::kSamplerNames[static_cast<std::size_t>(point.way.sampler)];
-    row.lights = kLightSamplingNames[static_cast<std::size_t>(point.way.light_sampling)];
+    row.sampler = compiler::kSamplerNames[static_cast<std::size_t>(point.variant.sampler)];
+    row.lights = kLightSamplingNames[static_cast<std::size_t>(point.variant.light_sampling)];
     row.spp = point.spp;
     row.seeds = static_cast<int>(errors.size());
     const Spread time = spread(seconds);
@@ -89,7 +89,7 @@ struct Gathered {
     };
     row.relmse_med = at(0.5), row.relmse_p05 = at(0.05), row.relmse_p95 = at(0.95);
     row.relmse_trimmed_med = spread(trimmed).median;
-    Channels mean = sum;
+    PixelValues mean = sum;
     for (double& value : mean) value /= static_cast<double>(errors.size());
     row.floor = relative_error(mean, reference).all;
     return row;
@@ -98,40 +98,40 @@ struct Gathered {
 
 }  // namespace
 
-std::vector<ImageWay> painted_ways(const compiler::CompiledScene& scene) {
+std::vector<ImageVariant> image_variants(const compiler::CompiledScene& scene) {
   using compiler::SamplerKind;
-  std::vector<ImageWay> ways = {{}};
+  std::vector<ImageVariant> variants = {{}};
   for (const double epsilon : {1e-2, 1e-3, 1e-4}) {
-    ways.push_back({.marching = {.method = Method::Sphere, .epsilon = epsilon}});
+    variants.push_back({.marching = {.method = Method::Sphere, .epsilon = epsilon}});
   }
   // Sky and environment map are light sources that can be sampled.
   const bool surrounded = scene.background.type != compiler::Background::Type::Gradient;
-  if (scene.lamps.empty() && scene.lights.empty() && !surrounded) return ways;
+  if (scene.area_lights.empty() && scene.lights.empty() && !surrounded) return variants;
   for (const SamplerKind sampler : {SamplerKind::Sobol, SamplerKind::Independent})
-    ways.push_back({.sampler = sampler});
-  ways.push_back({.light_sampling = LightSampling::Nee});
+    variants.push_back({.sampler = sampler});
+  variants.push_back({.light_sampling = LightSampling::Nee});
   for (const SamplerKind sampler : {SamplerKind::Blue, SamplerKind::Independent}) {
-    ways.push_back({.sampler = sampler, .light_sampling = LightSampling::Bsdf});
+    variants.push_back({.sampler = sampler, .light_sampling = LightSampling::Bsdf});
   }
-  return ways;
+  return variants;
 }
 
-Channels reference_picture(const compiler::CompiledScene& scene, const ImagePlan& plan) {
+PixelValues reference_image(const compiler::CompiledScene& scene, const ImagePlan& plan) {
   RenderOptions options;
   options.width = plan.width;
   options.height = plan.height;
   options.seed = kReferenceSeed;
   options.spp = plan.reference_spp;
-  options.marching = plan.reference_way.marching;
-  options.sampler = plan.reference_way.sampler;
-  options.light_sampling = plan.reference_way.light_sampling;
+  options.marching = plan.reference_variant.marching;
+  options.sampler = plan.reference_variant.sampler;
+  options.light_sampling = plan.reference_variant.light_sampling;
   return channels_of(render(scene, options).film);
 }
 
 std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scene, std::span<const ImagePoint> points,
-                                             const ImagePlan& plan, const Channels& reference,
+                                             const ImagePlan& plan, const PixelValues& reference,
                                              const std::string& scene_name) {
-  const Pinned pinned;
+  const PinnedThread pinned;
   RenderOptions options;
   options.width = plan.width;
   options.height = plan.height;
@@ -150,14 +150,14 @@ std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scen
   return rows;
 }
 
-std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageWay> ways,
+std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageVariant> variants,
                                              const ImagePlan& plan, const std::string& scene_name) {
   std::vector<ImagePoint> points;
-  for (const ImageWay& way : ways) {
+  for (const ImageVariant& variant : variants) {
     // Takes at least two samples, because a single sample lies at the pixel's centre.
-    for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({way, spp});
+    for (int spp = plan.spp; spp > 1; spp /= 4) points.push_back({variant, spp});
   }
-  return measure_points(scene, points, plan, reference_picture(scene, plan), scene_name);
+  return measure_points(scene, points, plan, reference_image(scene, plan), scene_name);
 }
 
 }  // namespace fathom::runtime

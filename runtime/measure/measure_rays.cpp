@@ -100,7 +100,7 @@ class Comparison {
     for (std::size_t i = 0; i < ray_hits.size(); ++i) {
       const bool hit = ray_hits[i].status == Status::Hit, expected = reference_[i].status == Status::Hit;
       const bool given_up = limited && !hit && ray_hits[i].evaluations >= static_cast<std::uint32_t>(marching.steps);
-      if (ray_hits[i].status == Status::Contact) row.contact_ppm += ppm;
+      if (ray_hits[i].status == Status::NearMiss) row.near_miss_ppm += ppm;
       if (!is_known(i)) continue;
       if (given_up) {
         row.exhausted_ppm += ppm;
@@ -143,7 +143,7 @@ void time_rows(const Field& field, const RaySet& set, std::span<const Marching> 
     std::span<const Ray> rays = set.rays;
     if (in_double(marching)) rays = rays.first(std::min(rays.size(), kTimedInDouble));
     counts.push_back(static_cast<double>(std::max<std::size_t>(1, rays.size())));
-    variants.push_back([&field, &marching, rays] { follow(field, rays, marching, [](const RayHit&) {}); });
+    variants.push_back([&field, &marching, rays] { march_each(field, rays, marching, [](const RayHit&) {}); });
   }
   const std::vector<std::vector<double>> seconds = time_interleaved(variants, rounds);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -177,7 +177,7 @@ std::vector<Marching> charted_methods() {
 std::vector<RayMeasurement> measure_rays(const compiler::CompiledScene& scene, const Field& field,
                                          std::span<const RaySet> sets, std::span<const Marching> methods, int rounds,
                                          const std::string& scene_name) {
-  const Pinned pinned;
+  const PinnedThread pinned;
   std::vector<RayMeasurement> all;
   for (const RaySet& set : sets) {
     if (set.rays.empty()) continue;

@@ -17,7 +17,7 @@ std::vector<Marching> charted_methods();
 
 // Returns one row per method and set, all with `scene_name`. Times are medians over `rounds`, and a round runs each
 // method once. A hit is gross when its error is more than a 250th of the extent. Rays that the reference calls
-// contacts or invalid do not count.
+// near misses or invalid do not count.
 std::vector<RayMeasurement> measure_rays(const compiler::CompiledScene& scene, const Field& field,
                                          std::span<const RaySet> sets, std::span<const Marching> methods, int rounds,
                                          const std::string& scene_name);

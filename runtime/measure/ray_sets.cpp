@@ -63,9 +63,9 @@ Ray bounce(const Place& place, double above, Random& random) {
 
 Ray graze(const Place& place, double extent, Random& random) {
   const dvec3 along = glm::normalize(glm::cross(place.normal, random.direction()));
-  const double way = random.uniform(0.2, 1) * extent, gap = std::pow(10, random.uniform(-6, -2)) * extent;
+  const double variant = random.uniform(0.2, 1) * extent, gap = std::pow(10, random.uniform(-6, -2)) * extent;
   const dvec3 beside = (random.uniform(0, 1) < 0.5 ? gap : -gap) * place.normal;
-  return {to_float(place.position + beside - way * along), to_float(along)};
+  return {to_float(place.position + beside - variant * along), to_float(along)};
 }
 
 }  // namespace

@@ -21,15 +21,15 @@ inline void pin_thread() {
 }
 
 // Pins the calling thread for the lifetime of the object.
-class Pinned {
+class PinnedThread {
  public:
-  Pinned() {
+  PinnedThread() {
     pthread_getaffinity_np(pthread_self(), sizeof before_, &before_);
     pin_thread();
   }
-  ~Pinned() { pthread_setaffinity_np(pthread_self(), sizeof before_, &before_); }
-  Pinned(const Pinned&) = delete;
-  Pinned& operator=(const Pinned&) = delete;
+  ~PinnedThread() { pthread_setaffinity_np(pthread_self(), sizeof before_, &before_); }
+  PinnedThread(const PinnedThread&) = delete;
+  PinnedThread& operator=(const PinnedThread&) = delete;
 
  private:
   cpu_set_t before_;

@@ -47,7 +47,7 @@ void begin_paths(const RenderContext& context, std::span<const PathKey> keys, st
     path.bounces = 0;
     path.null_interactions = 0;
     path.bsdf_pdf = 0;
-    path.in_shadow_test = false;
+    path.has_shadow_ray = false;
     path.ends = false;
     path.result = {};
     path.result.number = keys[i].sample;

@@ -20,7 +20,7 @@ constexpr int kMaxNullInteractions = 1024;
 
 // Returns the length of the shadow ray to a sampled point on a light: up to just before the light's surface.
 double shadow_length(const LightSample& light, const SurfacePoint& point) {
-  const double cosine = std::max(static_cast<double>(light.lamp_cosine), 1e-3);
+  const double cosine = std::max(static_cast<double>(light.light_cosine), 1e-3);
   const double before = kShadowOffsets * static_cast<double>(point.offset) / cosine;
   return light.distance - std::min(before, kMaxShortening * light.distance);
 }
@@ -29,18 +29,18 @@ bool may_sample_light(const RenderContext& context, const PathVertex& vertex) {
   const Settings& settings = context.settings;
   if (vertex.bsdf->is_delta()) return false;
   if (settings.max_depth && vertex.path->bounces >= *settings.max_depth) return false;
-  return settings.light_sampling != LightSampling::Bsdf || context.lights.has_deltas();
+  return settings.light_sampling != LightSampling::Bsdf || context.lights.has_delta_lights();
 }
 
 // Returns the radiance of the sampled light. The radiance of an area light may vary over its surface.
 glm::vec3 light_radiance(const RenderContext& context, const PathVertex& vertex, RealScratch& scratch) {
   const LightSample& light = vertex.light_sample;
   const Materials& materials = context.materials;
-  if (light.material == kNoMaterial || !materials.varies(light.material)) return light.radiance;
+  if (light.material == kNoMaterial || !materials.is_textured(light.material)) return light.radiance;
   const glm::dvec3 position = vertex.light_context.position + light.distance * glm::dvec3(light.wi);
   const glm::dvec3 place =
-      materials.placed(light.material) ? find_place(context.scene, context.field, position, scratch).place : position;
-  return materials.at(light.material, position, place, scratch.workspace).emitted();
+      materials.uses_object_space(light.material) ? find_object_point(context.scene, context.field, position, scratch).place : position;
+  return materials.at(light.material, position, place, scratch.workspace).emitted_radiance();
 }
 
 // Returns nothing if the light brings nothing.
@@ -56,14 +56,14 @@ std::optional<ShadowRay> shadow_ray_of(const RenderContext& context, PathVertex&
   const float weight = both ? power_heuristic(light.pdf, value.pdf) : 1;
   const bool through = glm::dot(light.wi, surface.point->normal) < 0;
   const MediumState& medium = through ? surface.medium_beyond : surface.medium;
-  const bool passes = context.materials.pass_straight();
+  const bool any_null = context.materials.any_null_transmission();
   // The surface of the medium would occlude the ray.
-  if (!passes && medium.field != 0 && std::isinf(light.distance)) return std::nullopt;
+  if (!any_null && medium.field != 0 && std::isinf(light.distance)) return std::nullopt;
   path.shadow_radiance = path.throughput * value.f * radiance * (weight / light.pdf);
-  if (!passes) path.shadow_radiance *= transmittance(medium, light.distance);
+  if (!any_null) path.shadow_radiance *= transmittance(medium, light.distance);
   if (!(max_component(path.shadow_radiance) > 0)) return std::nullopt;
   path.shadow_bounces = path.bounces + 1;
-  ShadowRay shadow{medium, leave(*surface.hit, *surface.point, glm::dvec3(light.wi), through), light.distance};
+  ShadowRay shadow{medium, spawn_ray(*surface.hit, *surface.point, glm::dvec3(light.wi), through), light.distance};
   shadow.ray.side = medium.side;
   shadow.ray.t_max = shadow_length(light, *surface.point);
   return shadow;
@@ -82,7 +82,7 @@ void sample_lights(const RenderContext& context, std::span<PathVertex> vertices)
     vertex.light_sample.pdf = 0;
     if (context.lights.empty()) continue;
     const SurfaceInteraction& surface = vertex.surface;
-    vertex.light_context = {spawn(*surface.hit, *surface.point, false), surface.point->normal,
+    vertex.light_context = {spawn_origin(*surface.hit, *surface.point, false), surface.point->normal,
                             surface.material->transmits()};
     if (!may_sample_light(context, vertex)) continue;
     Sampler& sampler = vertex.path->sampler;
@@ -94,7 +94,7 @@ void sample_lights(const RenderContext& context, std::span<PathVertex> vertices)
 void sample_direct_light(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch) {
   for (PathVertex& vertex : vertices) {
     vertex.shadow_ray = shadow_ray_of(context, vertex, scratch);
-    vertex.path->in_shadow_test = vertex.shadow_ray.has_value();
+    vertex.path->has_shadow_ray = vertex.shadow_ray.has_value();
   }
 }
 
@@ -102,8 +102,8 @@ void end_shadow_rays(const RenderContext& context, std::size_t field, std::span<
                      std::span<PathState> paths, std::span<const ShadowRay> rays) {
   for (const RayHit& ray_hit : ray_hits) {
     PathState& path = paths[ray_hit.id];
-    path.in_shadow_test = false;
-    const bool missed = ray_hit.status == RayHit::Status::Miss || ray_hit.status == RayHit::Status::Contact;
+    path.has_shadow_ray = false;
+    const bool missed = ray_hit.status == RayHit::Status::Miss || ray_hit.status == RayHit::Status::NearMiss;
     if (!missed || is_endless(field, rays, ray_hit.id)) continue;
     if (!rays.empty()) {
       const ShadowRay& shadow = rays[ray_hit.id];
@@ -116,21 +116,21 @@ void end_shadow_rays(const RenderContext& context, std::size_t field, std::span<
 void end_occluded_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices) {
   for (PathVertex& vertex : vertices) {
     vertex.active =
-        vertex.surface.material->passes_straight() && rays[vertex.id].null_interactions < kMaxNullInteractions;
-    vertex.path->in_shadow_test = vertex.active;
+        vertex.surface.material->has_null_transmission() && rays[vertex.id].null_interactions < kMaxNullInteractions;
+    vertex.path->has_shadow_ray = vertex.active;
   }
 }
 
-void pass_shadow_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices) {
+void continue_shadow_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices) {
   for (PathVertex& vertex : vertices) {
     if (!vertex.active) continue;
     PathState& path = *vertex.path;
     const SurfaceInteraction& surface = vertex.surface;
     const ShadowRay& shadow = rays[vertex.id];
-    path.shadow_radiance *= vertex.bsdf->straight_through() * transmittance(shadow.medium, vertex.t);
-    path.in_shadow_test = max_component(path.shadow_radiance) > 0;
-    if (!path.in_shadow_test) continue;
-    Ray ray = leave(*surface.hit, *surface.point, shadow.ray.direction, true);
+    path.shadow_radiance *= vertex.bsdf->null_transmission() * transmittance(shadow.medium, vertex.t);
+    path.has_shadow_ray = max_component(path.shadow_radiance) > 0;
+    if (!path.has_shadow_ray) continue;
+    Ray ray = spawn_ray(*surface.hit, *surface.point, shadow.ray.direction, true);
     ray.side = surface.medium_beyond.side;
     // The ray starts behind the surface. Its end before the light stays in place.
     const double gone = glm::dot(ray.origin - shadow.ray.origin, shadow.ray.direction);

@@ -30,6 +30,6 @@ void end_shadow_rays(const RenderContext& context, std::size_t field, std::span<
 void end_occluded_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices);
 
 // Makes the shadow rays that go on behind the vertices, with the light that is left.
-void pass_shadow_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices);
+void continue_shadow_rays(std::span<const ShadowRay> rays, std::span<PathVertex> vertices);
 
 }  // namespace fathom::runtime

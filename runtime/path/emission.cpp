@@ -19,15 +19,15 @@ void add_radiance(const Settings& settings, PathState& path, glm::vec3 radiance,
 void add_emission(const RenderContext& context, std::span<PathVertex> vertices) {
   for (PathVertex& vertex : vertices) {
     const SurfaceInteraction& surface = vertex.surface;
-    const glm::vec3 emitted = surface.material->emitted();
-    if (emitted == glm::vec3(0)) continue;
+    const glm::vec3 emitted_radiance = surface.material->emitted_radiance();
+    if (emitted_radiance == glm::vec3(0)) continue;
     PathState& path = *vertex.path;
     float light_pdf = 0;
     if (path.bsdf_pdf > 0 && !context.lights.empty()) {
       light_pdf = context.lights.pdf_of_hit(path.bounce_context, surface.point->surface, surface.hit->position);
     }
     const float weight = bsdf_mis_weight(context.settings.light_sampling, path.bsdf_pdf, light_pdf);
-    if (weight > 0) add_radiance(context.settings, path, path.throughput * emitted * weight, path.bounces);
+    if (weight > 0) add_radiance(context.settings, path, path.throughput * emitted_radiance * weight, path.bounces);
   }
 }
 

@@ -32,15 +32,15 @@ void find_material(const RenderContext& context, SurfaceInteraction& surface, Re
   const glm::dvec3 position = surface.hit->position;
   if (context.scene.surfaces[surface.point->surface].mixed) {
     const Field& field = context.field_at(surface.medium.field);
-    const vm::SurfaceShares shares = find_shares(context.scene, field, position, scratch);
+    const vm::SurfaceShares shares = find_blend_weights(context.scene, field, position, scratch);
     if (shares.count > 1) {
       surface.own_material = mix_of(context, shares, position, scratch);
       surface.material = &surface.own_material;
       return;
     }
   }
-  surface.material = &context.materials.typical(number);
-  if (!context.materials.varies(number)) return;
+  surface.material = &context.materials.untextured(number);
+  if (!context.materials.is_textured(number)) return;
   surface.own_material = context.materials.at(number, position, surface.point->place, scratch.workspace);
   surface.material = &surface.own_material;
 }
@@ -57,10 +57,10 @@ void begin_vertex(const HitBatch& batch, std::size_t i, PathState& path, PathVer
 
 }  // namespace
 
-RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool passes) {
-  const auto tests_shadow = [&](const RayHit& ray_hit) { return paths[ray_hit.id].in_shadow_test; };
+RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool has_null_transmission) {
+  const auto tests_shadow = [&](const RayHit& ray_hit) { return paths[ray_hit.id].has_shadow_ray; };
   const auto ends_test = [&](const RayHit& ray_hit) {
-    return tests_shadow(ray_hit) && (!passes || !is_hit(ray_hit));
+    return tests_shadow(ray_hit) && (!has_null_transmission || !is_hit(ray_hit));
   };
   const auto tests_end = std::partition(ray_hits.begin(), ray_hits.end(), ends_test);
   const auto shadows_end = std::partition(tests_end, ray_hits.end(), tests_shadow);
@@ -76,7 +76,7 @@ void add_costs(std::span<const RayHit> ray_hits, std::span<PathState> paths) {
   }
 }
 
-void place_path_hits(std::span<const RayHit> ray_hits, std::span<const PathState> paths, HitBatch& batch) {
+void set_path_hit_positions(std::span<const RayHit> ray_hits, std::span<const PathState> paths, HitBatch& batch) {
   batch.ray_hits = ray_hits;
   for (std::size_t i = 0; i < ray_hits.size(); ++i) {
     const PathState& path = paths[ray_hits[i].id];
@@ -84,7 +84,7 @@ void place_path_hits(std::span<const RayHit> ray_hits, std::span<const PathState
   }
 }
 
-void place_shadow_hits(std::span<const RayHit> ray_hits, std::span<const ShadowRay> rays, HitBatch& batch) {
+void set_shadow_hit_positions(std::span<const RayHit> ray_hits, std::span<const ShadowRay> rays, HitBatch& batch) {
   batch.ray_hits = ray_hits;
   for (std::size_t i = 0; i < ray_hits.size(); ++i) {
     const Ray& ray = rays[ray_hits[i].id].ray;
@@ -96,7 +96,7 @@ void find_surface_points(const RenderContext& context, std::size_t field, HitBat
                          RealScratch& scratch) {
   const std::span<const Hit> hits = std::span(batch.hits).first(batch.ray_hits.size());
   find_surfaces(context.scene, context.field_at(field), hits, batch.points, workspace);
-  find_places(context.scene, context.field_at(field), hits, batch.points, scratch);
+  find_object_points(context.scene, context.field_at(field), hits, batch.points, scratch);
 }
 
 void begin_vertices(const HitBatch& batch, std::size_t first, std::span<PathState> paths,

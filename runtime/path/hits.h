@@ -22,8 +22,8 @@ struct RayHitGroups {
   std::span<const RayHit> surface_hits;       // of the paths' own rays
   std::span<const RayHit> escaped_rays;       // the paths' own rays that hit nothing
 };
-// Reorders the results. `passes`: true if there are surfaces that light may pass straight through.
-RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool passes);
+// Reorders the results. `has_null_transmission`: true if there are surfaces that light may pass straight through.
+RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool has_null_transmission);
 
 // Adds the evaluations of the rays to their paths.
 void add_costs(std::span<const RayHit> ray_hits, std::span<PathState> paths);
@@ -35,8 +35,8 @@ struct HitBatch {
   std::array<SurfacePoint, kSurfaceBatch> points;
 };
 // Set the positions of the hits, of the paths' own rays or of shadow rays.
-void place_path_hits(std::span<const RayHit> ray_hits, std::span<const PathState> paths, HitBatch& batch);
-void place_shadow_hits(std::span<const RayHit> ray_hits, std::span<const ShadowRay> rays, HitBatch& batch);
+void set_path_hit_positions(std::span<const RayHit> ray_hits, std::span<const PathState> paths, HitBatch& batch);
+void set_shadow_hit_positions(std::span<const RayHit> ray_hits, std::span<const ShadowRay> rays, HitBatch& batch);
 // Finds the surfaces at the hits of field number `field`.
 void find_surface_points(const RenderContext& context, std::size_t field, HitBatch& batch, vm::Workspace& workspace,
                          RealScratch& scratch);

@@ -31,7 +31,7 @@ Integrator::Integrator(const RenderContext& context, PathSource& source, SampleS
       queues_(context),
       paths_(queues_.capacity()),
       vertices_(kVertexBatch) {
-  if (context.materials.pass_straight()) shadow_rays_.resize(paths_.size());
+  if (context.materials.any_null_transmission()) shadow_rays_.resize(paths_.size());
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
 
@@ -73,7 +73,7 @@ void Integrator::process_ray_hits(std::size_t field) {
   end_shadow_rays(context_, field, groups.ended_shadow_rays, paths_, shadow_rays_);
   for (const RayHit& ray_hit : groups.ended_shadow_rays) continue_path(ray_hit.id);
   for_each_part(groups.shadow_hits.size(), kSurfaceBatch, [&](std::size_t first, std::size_t count) {
-    pass_shadow_hits(field, groups.shadow_hits.subspan(first, count));
+    process_shadow_hits(field, groups.shadow_hits.subspan(first, count));
   });
   for_each_part(groups.surface_hits.size(), kSurfaceBatch, [&](std::size_t first, std::size_t count) {
     shade_hits(field, groups.surface_hits.subspan(first, count));
@@ -88,7 +88,7 @@ void Integrator::process_ray_hits(std::size_t field) {
 void Integrator::shade_hits(std::size_t field, std::span<const RayHit> ray_hits) {
   HitBatch batch;
   queues_.clock().enter(Stage::Normals);
-  place_path_hits(ray_hits, paths_, batch);
+  set_path_hit_positions(ray_hits, paths_, batch);
   find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
   queues_.clock().enter(Stage::Shading);
   for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
@@ -112,10 +112,10 @@ void Integrator::run_stages(std::span<PathVertex> vertices) {
   trace_next_rays(vertices);
 }
 
-void Integrator::pass_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits) {
+void Integrator::process_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits) {
   HitBatch batch;
   queues_.clock().enter(Stage::Normals);
-  place_shadow_hits(ray_hits, shadow_rays_, batch);
+  set_shadow_hit_positions(ray_hits, shadow_rays_, batch);
   find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
   queues_.clock().enter(Stage::Shading);
   for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
@@ -130,7 +130,7 @@ void Integrator::run_shadow_stages(std::span<PathVertex> vertices) {
   end_occluded_rays(shadow_rays_, vertices);
   find_media(context_, vertices, scratch_);
   make_bsdfs(vertices);
-  pass_shadow_rays(shadow_rays_, vertices);
+  continue_shadow_rays(shadow_rays_, vertices);
   trace_next_rays(vertices);
 }
 

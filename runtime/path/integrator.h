@@ -69,7 +69,7 @@ class Integrator {
   bool start_paths();
   void process_ray_hits(std::size_t field);
   void shade_hits(std::size_t field, std::span<const RayHit> ray_hits);
-  void pass_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits);
+  void process_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits);
   void run_stages(std::span<PathVertex> vertices);
   void run_shadow_stages(std::span<PathVertex> vertices);
 

@@ -14,7 +14,7 @@ void Media::add_regions(const compiler::CompiledScene& scene, RegionOptions opti
   for (std::size_t i = 0; i < media_.size(); ++i) {
     Field& field = media_[i].field;
     runtime::add_regions(field, scene.media[i], options, store);
-    if (field.regions) options.memory -= std::min(options.memory, field.regions->facts().bytes);
+    if (field.regions) options.memory -= std::min(options.memory, field.regions->summary().bytes);
   }
 }
 

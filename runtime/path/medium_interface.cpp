@@ -21,7 +21,7 @@ MediumState no_medium(const RenderContext& context, const SurfaceInteraction& su
   std::uint64_t instructions = 0;
   if (context.field.evaluate(place, scratch, instructions) >= 0) return state;
   state.side = -1;
-  if (surface.material->fills()) {
+  if (surface.material->has_interior()) {
     state.ior = surface.material->ior;
     state.absorption = surface.material->absorption;
   }
@@ -32,7 +32,7 @@ MediumState medium_beyond(const RenderContext& context, const SurfaceInteraction
   if (!surface.material->transmits()) return surface.medium;
   const Media& media = context.media;
   MediumState state = surface.medium;
-  const glm::dvec3 place = spawn(*surface.hit, *surface.point, true);
+  const glm::dvec3 place = spawn_origin(*surface.hit, *surface.point, true);
   std::optional<std::uint32_t> medium;
   if (media.size() > 1 || !surface.inside) medium = media.at(place, scratch);
   if (!medium) return no_medium(context, surface, place, scratch);
@@ -41,7 +41,7 @@ MediumState medium_beyond(const RenderContext& context, const SurfaceInteraction
   const MaterialPoint interior = media.material(*medium) == surface.point->material
                                      ? *surface.material
                                      : interior_at(place, *medium, media, context.materials, scratch);
-  if (interior.fills()) {
+  if (interior.has_interior()) {
     state.ior = interior.ior;
     state.absorption = interior.absorption;
   }

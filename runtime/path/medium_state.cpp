@@ -14,7 +14,7 @@ MediumState medium_at(glm::dvec3 place, const Media& media, const Materials& mat
   const MaterialPoint interior = interior_at(place, *medium, media, materials, scratch);
   state.field = *medium + 1;
   state.side = -1;
-  if (!interior.fills()) return state;
+  if (!interior.has_interior()) return state;
   state.ior = interior.ior;
   state.absorption = interior.absorption;
   return state;
@@ -23,8 +23,8 @@ MediumState medium_at(glm::dvec3 place, const Media& media, const Materials& mat
 MaterialPoint interior_at(glm::dvec3 place, std::uint32_t medium, const Media& media, const Materials& materials,
                           RealScratch& scratch) {
   const std::uint32_t material = media.material(medium);
-  if (!materials.placed(material)) return materials.at(material, place, place, scratch.workspace);
-  const vm::SurfacePlace found = find_place(materials.scene(), media.field(medium), place, scratch);
+  if (!materials.uses_object_space(material)) return materials.at(material, place, place, scratch.workspace);
+  const vm::SurfacePlace found = find_object_point(materials.scene(), media.field(medium), place, scratch);
   return materials.at(material, place, found.place, scratch.workspace);
 }
 

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "runtime/film/film.h"
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 #include "runtime/march/ray.h"
 #include "runtime/path/medium_state.h"
 #include "runtime/sampling/sampler.h"
@@ -33,10 +33,10 @@ struct PathState {
   int null_interactions;  // so far: holes and thin walls passed straight through, which are no bounces
   // The last bounce, for MIS: its place, and the density per solid angle of the direction that was sampled there. The
   // density is 0 for a delta direction and for camera rays.
-  LightQuery bounce_context;
+  LightSampleContext bounce_context;
   float bsdf_pdf;
   // While a shadow ray is under way: the light that it brings if it is unoccluded.
-  bool in_shadow_test;
+  bool has_shadow_ray;
   bool ends;  // after the shadow ray, if there is one
   glm::vec3 shadow_radiance;
   int shadow_bounces;  // of the path that the shadow ray would end

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "runtime/light/light.h"
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 #include "runtime/material/bsdf.h"
 #include "runtime/material/material.h"
 #include "runtime/path/medium_state.h"
@@ -38,7 +38,7 @@ struct PathVertex {
   std::optional<Bsdf> bsdf;
   BsdfSample bsdf_sample;
   float roulette;            // random number in [0,1) for Russian roulette
-  LightQuery light_context;  // only in a scene with lights
+  LightSampleContext light_context;  // only in a scene with lights
   LightSample light_sample;
   std::optional<ShadowRay> shadow_ray;  // to be traced before the path goes on
 };

@@ -12,36 +12,36 @@ namespace fathom::runtime {
 namespace {
 
 // The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
-constexpr float kLeastCosine = 1e-4f;
+constexpr float kMinCosine = 1e-4f;
 // A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large
 // numbers cancel d_f's bound is loose, and twice it is enough.
 constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
 // ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
-constexpr float kMostOffset = 32;
+constexpr float kMaxOffset = 32;
 
 // Of what is known to be clear so much is trusted: a ray must not begin where rounding may put the next surface.
 constexpr float kTrusted = 0.98f;
 
 // What the gradient says of the surface that was hit. It is the normal but where rounding or a crease has it look
 // away from the ray; there it is turned just far enough.
-struct Facing {
+struct FacingNormal {
   glm::vec3 normal;
   bool exact;
 };
-Facing facing(glm::vec3 gradient, const Hit& hit) {
+FacingNormal facing_normal(glm::vec3 gradient, const Hit& hit) {
   const float length = std::sqrt(glm::dot(gradient, gradient));
   if (!(length > 0 && length < INFINITY)) return {hit.wo, false};
   const glm::vec3 normal = gradient * (static_cast<float>(hit.side) / length);
   const float cosine = glm::dot(normal, hit.wo);
   if (cosine > 0) return {normal, true};
-  const glm::vec3 turned = normal + (kLeastCosine - cosine) * hit.wo;
+  const glm::vec3 turned = normal + (kMinCosine - cosine) * hit.wo;
   const float squared = glm::dot(turned, turned);
-  return {squared > kLeastCosine * kLeastCosine ? turned / std::sqrt(squared) : hit.wo, false};
+  return {squared > kMinCosine * kMinCosine ? turned / std::sqrt(squared) : hit.wo, false};
 }
 
 // How far from the hit nothing comes in the way of rays that leave a convex solid.
-float clear_of(float convex, float size, float offset, const Field& field) {
-  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.magnitude);
+float clear_distance(float convex, float size, float offset, const Field& field) {
+  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.cancellation);
   return std::max(0.0f, kTrusted * (convex - 2 * error) * field.inv_lipschitz - offset);
 }
 
@@ -67,8 +67,8 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   for (std::size_t i = 0; i < hits.size(); ++i) {
     glm::vec3 gradient{gx[i], gy[i], gz[i]};
     const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
-    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.magnitude);
-    const float most = kMostOffset * field.band;
+    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
+    const float most = kMaxOffset * field.band;
     if (least > most) {
       // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
       const vm::SurfaceValue exact = field.regions
@@ -79,29 +79,29 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
       convex[i] = 0;
     }
     CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
-    const Facing found = facing(gradient, hits[i]);
+    const FacingNormal found = facing_normal(gradient, hits[i]);
     points[i].normal = found.normal;
     points[i].surface = surface[i];
     points[i].material = scene.surfaces[surface[i]].material;
     points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
     points[i].clear = found.exact && hits[i].side > 0 && !field.far_levels.used()
-                          ? clear_of(convex[i], size, points[i].offset, field)
+                          ? clear_distance(convex[i], size, points[i].offset, field)
                           : 0;
   }
 }
 
-void find_places(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+void find_object_points(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                  std::span<SurfacePoint> points, RealScratch& scratch) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!scene.surfaces[points[i].surface].placed) continue;
-    const vm::SurfacePlace found = find_place(scene, field, hits[i].position, scratch);
+    const vm::SurfacePlace found = find_object_point(scene, field, hits[i].position, scratch);
     points[i].surface = found.surface;
     points[i].material = scene.surfaces[found.surface].material;
     points[i].place = found.place;
   }
 }
 
-vm::SurfacePlace find_place(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
+vm::SurfacePlace find_object_point(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
                             RealScratch& scratch) {
   vm::SurfacePlace found = field.regions ? field.regions->evaluate_place(position, scratch)
                                          : vm::evaluate_place(*field.surface, position, scratch.workspace);
@@ -110,7 +110,7 @@ vm::SurfacePlace find_place(const compiler::CompiledScene& scene, const Field& f
   return found;
 }
 
-vm::SurfaceShares find_shares(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
+vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
                               RealScratch& scratch) {
   const bool placed =
       std::any_of(scene.surfaces.begin(), scene.surfaces.end(), std::mem_fn(&compiler::Surface::placed));

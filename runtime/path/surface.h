@@ -45,31 +45,31 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
 
 // Where hits on `placed` surfaces are in the coordinates of their nodes, by the field in double. At a seam that may
 // find another surface than float did: then the point is of that one.
-void find_places(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+void find_object_points(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                  std::span<SurfacePoint> points, RealScratch& scratch);
 // The surface at a place of `field`'s surface, or nearest to it, and that place in the coordinates of its node.
-vm::SurfacePlace find_place(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
+vm::SurfacePlace find_object_point(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
                             RealScratch& scratch);
 
 // The surfaces that have a share in a place of `field`'s surface, with their places where some surface is `placed`.
-vm::SurfaceShares find_shares(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
+vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
                               RealScratch& scratch);
 
 // Where a ray starts that leaves the surface into the space the ray came through, or past the surface into the other.
-inline glm::dvec3 spawn(const Hit& hit, const SurfacePoint& point, bool through) {
+inline glm::dvec3 spawn_origin(const Hit& hit, const SurfacePoint& point, bool through) {
   const double along = through ? -point.offset : point.offset;
   return hit.position + along * glm::dvec3(point.normal);
 }
 
 // The ray that leaves from there into `direction`, of unit length. Here, so that it stays in registers.
-inline Ray leave(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
+inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
   // Nearly along the surface it might meet it again by the normal's error.
-  constexpr float kLeastLeaving = 0x1p-6f;
-  Ray ray{spawn(hit, point, through), direction};
+  constexpr float kMinLeaving = 0x1p-6f;
+  Ray ray{spawn_origin(hit, point, through), direction};
   const float cosine = glm::dot(point.normal, glm::vec3(direction));
   ray.side = through ? -hit.side : hit.side;
   ray.slope = std::abs(cosine);
-  ray.clear = !through && cosine > kLeastLeaving ? point.clear : 0;
+  ray.clear = !through && cosine > kMinLeaving ? point.clear : 0;
   return ray;
 }
 

@@ -97,7 +97,7 @@ void Camera::set_lens(const compiler::Camera& camera) {
   if (camera.blades >= 3) corners_ = polygon(camera.blades, camera.blade_rotation);
 }
 
-glm::dvec3 Camera::aside(double x, double y) const {
+glm::dvec3 Camera::image_plane_offset(double x, double y) const {
   const double sx = (2 * x / size_.x - 1) * half_.x;
   const double sy = (1 - 2 * y / size_.y) * half_.y;
   return right_ * sx + up_ * sy;
@@ -105,15 +105,15 @@ glm::dvec3 Camera::aside(double x, double y) const {
 
 CameraRay Camera::ray(double x, double y) const {
   if (projection_ == Projection::Panorama) return panorama_ray(x, y);
-  if (projection_ == Projection::Orthographic) return {position_ + aside(x, y), forward_};
-  return {position_, glm::normalize(aside(x, y) + forward_)};
+  if (projection_ == Projection::Orthographic) return {position_ + image_plane_offset(x, y), forward_};
+  return {position_, glm::normalize(image_plane_offset(x, y) + forward_)};
 }
 
 CameraRay Camera::ray(double x, double y, glm::vec2 u) const {
   if (!has_lens()) return ray(x, y);
   const glm::dvec2 place = lens_point(u);
   const glm::dvec3 offset = right_ * place.x + up_ * place.y;
-  return {position_ + offset, glm::normalize((aside(x, y) + forward_) * focus_distance_ - offset)};
+  return {position_ + offset, glm::normalize((image_plane_offset(x, y) + forward_) * focus_distance_ - offset)};
 }
 
 glm::dvec2 Camera::lens_point(glm::vec2 u) const {

@@ -62,7 +62,7 @@ class Camera {
   void set_lens(const compiler::Camera& camera);
   CameraRay panorama_ray(double x, double y) const;
   // Returns the offset of a point of the image from the image's centre, on the plane at unit distance.
-  glm::dvec3 aside(double x, double y) const;
+  glm::dvec3 image_plane_offset(double x, double y) const;
 
   compiler::Camera::Projection projection_;
   glm::dvec3 position_, forward_, right_, up_;

@@ -54,26 +54,26 @@ Filter::Filter(FilterKind kind, std::optional<double> width)
     const double value = filter_value(kind, static_cast<double>(i) / kCells);
     if (value < 0) positive = std::min(positive, i);
     magnitude_[i] = std::abs(value);
-    below_[i] = i == 0 ? 0 : below_[i - 1] + (magnitude_[i - 1] + magnitude_[i]) / 2;
+    cdf_[i] = i == 0 ? 0 : cdf_[i - 1] + (magnitude_[i - 1] + magnitude_[i]) / 2;
   }
-  const double all = below_[kCells];
-  for (double& share : below_) share /= all;
+  const double all = cdf_[kCells];
+  for (double& share : cdf_) share /= all;
   std::size_t cell = 0;
   for (std::size_t k = 0; k < kCells; ++k) {
-    while (below_[cell + 1] <= static_cast<double>(k) / kCells) ++cell;
-    first_[k] = static_cast<std::uint16_t>(cell);
+    while (cdf_[cell + 1] <= static_cast<double>(k) / kCells) ++cell;
+    cdf_guide_[k] = static_cast<std::uint16_t>(cell);
   }
   negative_from_ = positive == kCells ? INFINITY : radius_ * static_cast<double>(positive) / kCells;
-  // A coordinate is positive with probability below_[positive], else negative. The weights' mean is 1.
-  weight_ = static_cast<float>(1 / (2 * below_[positive] - 1));
+  // A coordinate is positive with probability cdf_[positive], else negative. The weights' mean is 1.
+  weight_ = static_cast<float>(1 / (2 * cdf_[positive] - 1));
 }
 
-// Returns the |offset| below which the share of the magnitude lies, share in [0,1). The density is linear in a cell,
+// Returns the |offset| below which the share of the cancellation lies, share in [0,1). The density is linear in a cell,
 // so the offset is the root of a quadratic.
-double Filter::distance(double share) const {
-  std::size_t cell = first_[static_cast<std::size_t>(share * kCells)];
-  while (below_[cell + 1] <= share) ++cell;
-  const double t = (share - below_[cell]) / (below_[cell + 1] - below_[cell]);
+double Filter::invert_cdf(double share) const {
+  std::size_t cell = cdf_guide_[static_cast<std::size_t>(share * kCells)];
+  while (cdf_[cell + 1] <= share) ++cell;
+  const double t = (share - cdf_[cell]) / (cdf_[cell + 1] - cdf_[cell]);
   if (!(t > 0)) return radius_ * static_cast<double>(cell) / kCells;
   const double p = magnitude_[cell], q = magnitude_[cell + 1];
   const double part = t * (p + q) / (p + std::sqrt(p * p + t * (q * q - p * p)));
@@ -87,7 +87,7 @@ FilterSample Filter::sample(glm::vec2 u) const {
   for (int axis = 0; axis < 2; ++axis) {
     const double side = 2 * static_cast<double>(u[axis]) - 1;
     // u = 0 has the share 1, which lies at the support's end.
-    const double away = side == -1 ? radius_ : distance(std::abs(side));
+    const double away = side == -1 ? radius_ : invert_cdf(std::abs(side));
     sample.offset[axis] = static_cast<float>(std::copysign(away, side));
     sample.weight *= away >= negative_from_ ? -weight_ : weight_;
   }

@@ -108,7 +108,7 @@ class PixelKey {
     sample_bits_ = std::bit_width(static_cast<std::uint32_t>(plan.spp - 1));
     pixel_bits_ = (32 - sample_bits_) & ~1;
     key_ = mix64(seed + (static_cast<std::uint64_t>(place) >> pixel_bits_));
-    place_ = reversed(static_cast<std::uint64_t>(place) << (64 - pixel_bits_)) & 0xffffffffu;
+    pixel_index_ = reversed(static_cast<std::uint64_t>(place) << (64 - pixel_bits_)) & 0xffffffffu;
   }
 
  private:
@@ -116,7 +116,7 @@ class PixelKey {
   SamplerKind kind_ = SamplerKind::Independent;
   std::uint64_t key_ = 0;
   // Pixel's part of the index in the sequence, written backwards: the pixel's first digit is lowest.
-  std::uint32_t place_ = 0;
+  std::uint32_t pixel_index_ = 0;
   int pixel_bits_ = 0, sample_bits_ = 32;
 };
 
@@ -135,7 +135,7 @@ class Sampler {
     // Samples beyond the planned number come from another sequence.
     if (index >> pixel.sample_bits_ != 0) key_ = mix64(key_ + kGoldenGamma * (index >> pixel.sample_bits_));
     const std::uint64_t backwards = reversed(index << 32 << (32 - pixel.sample_bits_));
-    index_ = static_cast<std::uint32_t>(backwards << pixel.pixel_bits_) | pixel.place_;
+    index_ = static_cast<std::uint32_t>(backwards << pixel.pixel_bits_) | pixel.pixel_index_;
     unused_bits_ = static_cast<std::uint8_t>(32 - pixel.pixel_bits_ - pixel.sample_bits_);
     pixel_bits_ = static_cast<std::uint8_t>(pixel.pixel_bits_);
   }
@@ -146,7 +146,7 @@ class Sampler {
   // Assigns the numbers drawn next to the bounce, counted from 0.
   void start_bounce(int bounce) {
     const std::uint32_t pairs = 2 + static_cast<std::uint32_t>(bounce) * kPairsPerBounce;
-    drawn_ = kind_ == SamplerKind::Independent ? 2 * pairs : pairs;
+    dimension_ = kind_ == SamplerKind::Independent ? 2 * pairs : pairs;
   }
 
   // Returns a number in [0,1), a multiple of 2^-24.
@@ -171,10 +171,10 @@ class Sampler {
  private:
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-  float next_independent() { return static_cast<float>(mix64(key_ + kGoldenGamma * ++drawn_) >> 40) * 0x1p-24f; }
+  float next_independent() { return static_cast<float>(mix64(key_ + kGoldenGamma * ++dimension_) >> 40) * 0x1p-24f; }
 
   // Returns 64 random bits for the next pair. The seeds are made of these bits.
-  std::uint64_t pair_hash() { return mix64(key_ + kGoldenGamma * ++drawn_); }
+  std::uint64_t pair_hash() { return mix64(key_ + kGoldenGamma * ++dimension_); }
   static std::uint32_t first_seed(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
   static std::uint32_t second_seed(std::uint64_t hash) {
     return static_cast<std::uint32_t>(hash * 0xd1342543de82ef95u >> 32);
@@ -204,7 +204,7 @@ class Sampler {
   SamplerKind kind_ = SamplerKind::Independent;
   std::uint8_t unused_bits_ = 0, pixel_bits_ = 0;
   std::uint32_t index_ = 0;  // of the sample in the sequence, written backwards
-  std::uint32_t drawn_ = 0;  // number of pairs drawn; for `independent`, of numbers
+  std::uint32_t dimension_ = 0;  // number of pairs drawn; for `independent`, of numbers
   std::uint64_t key_ = 0;
 };
 

@@ -15,10 +15,10 @@ double random_of(std::uint64_t seed, int frame, int run) {
 
 }  // namespace
 
-std::vector<ShutterRun> shutter_runs(int spp, int times, std::uint64_t seed, int frame) {
+std::vector<ShutterInterval> shutter_intervals(int spp, int times, std::uint64_t seed, int frame) {
   const std::int64_t pairs = spp / 2;
   const int count = std::max(1, std::min(times, static_cast<int>(pairs)));
-  std::vector<ShutterRun> runs;
+  std::vector<ShutterInterval> runs;
   std::uint32_t first = 0;
   for (int run = 0; run < count; ++run) {
     // The last run takes the sample that is left of an odd number.

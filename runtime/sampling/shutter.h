@@ -17,7 +17,7 @@
 
 namespace fathom::runtime {
 
-inline constexpr int kUsualShutterTimes = 16;
+inline constexpr int kDefaultShutterTimes = 16;
 
 // Returns the seed of a frame's random numbers. Each frame has its own, because noise that stands still is visible.
 // Frame 0 has `seed` itself.
@@ -26,7 +26,7 @@ constexpr std::uint64_t frame_seed(std::uint64_t seed, int frame) {
   return mix64(mix64(seed + kGoldenGamma) + kGoldenGamma * static_cast<std::uint64_t>(frame));
 }
 
-struct ShutterRun {
+struct ShutterInterval {
   SampleRange samples;
   double time;  // moment of the scene, as a share of the time that the shutter is open, in [0,1)
 };
@@ -34,6 +34,6 @@ struct ShutterRun {
 // Returns at most `times` runs, in order, with `spp` samples together. Runs are equally long if their number divides
 // spp/2. Otherwise their lengths differ by two samples, and their shares of the time accordingly. `seed` is that of
 // all frames.
-std::vector<ShutterRun> shutter_runs(int spp, int times, std::uint64_t seed, int frame);
+std::vector<ShutterInterval> shutter_intervals(int spp, int times, std::uint64_t seed, int frame);
 
 }  // namespace fathom::runtime

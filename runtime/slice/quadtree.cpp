@@ -21,7 +21,7 @@ constexpr int kEdges[] = {256, 64, 16};
 constexpr int kLevels = 3, kTilesAcross = 4;
 static_assert(kTilesAcross * kTilesAcross == vm::kEnclosedBoxes);
 // Values of a program with fewer choices take no longer without pruning. Signs always gain from filled tiles.
-constexpr std::size_t kLeastChoices = 24;
+constexpr std::size_t kMinChoices = 24;
 
 struct Tile {
   int x, y;  // first pixel
@@ -40,14 +40,14 @@ class QuadtreeWorker {
   }
 
   // Evaluates the sixteen tiles of a level that start at `first`, as far as the image goes, or only tile `only`.
-  void run(const vm::Part& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
+  void run(const vm::PrunedProgram& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
     const int edge = kEdges[level];
     vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
     if (prunes_) {
       set_boxes(first, edge);
-      specialiser.look(part, boxes(), workspace_);
+      specialiser.enclose_choices(part, boxes(), workspace_);
       const float infinity = std::numeric_limits<float>::infinity();
-      specialiser.decide(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+      specialiser.resolve(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
     }
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       const Tile tile = tile_of(first, edge, i);
@@ -56,7 +56,7 @@ class QuadtreeWorker {
         fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
         continue;
       }
-      const vm::Part& child = prunes_ ? cut(part, specialiser, i, level) : part;
+      const vm::PrunedProgram& child = prunes_ ? cut(part, specialiser, i, level) : part;
       if (level + 1 < kLevels) {
         run(child, tile, level + 1);
       } else {
@@ -67,11 +67,12 @@ class QuadtreeWorker {
 
  private:
   // Returns the part of `part` that matters in box i, or `part` itself if a smaller part costs more than it saves.
-  const vm::Part& cut(const vm::Part& part, vm::Specialiser& specialiser, std::size_t i, int level) {
+  const vm::PrunedProgram& cut(const vm::PrunedProgram& part, vm::Specialiser& specialiser, std::size_t i,
+                               int level) {
     constexpr std::uint32_t kCheap = 16;  // choices
     if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
-    vm::Part& child = parts_[static_cast<std::size_t>(level)];
-    specialiser.part(i, child);
+    vm::PrunedProgram& child = parts_[static_cast<std::size_t>(level)];
+    specialiser.prune(i, child);
     return child;
   }
   static Tile tile_of(Tile first, int edge, std::size_t i) {
@@ -103,7 +104,7 @@ class QuadtreeWorker {
     for (int y = tile.y; y < y1; ++y) std::fill(row(y) + tile.x, row(y) + x1, value);
   }
 
-  void evaluate(const vm::Part& part, Tile tile) {
+  void evaluate(const vm::PrunedProgram& part, Tile tile) {
     constexpr int kFinestEdge = kEdges[kLevels - 1];
     const int x1 = std::min(tile.x + kFinestEdge, slice_.width), y1 = std::min(tile.y + kFinestEdge, slice_.height);
     alignas(64) std::array<std::array<float, kFinestEdge * kFinestEdge>, 3> points;
@@ -134,7 +135,7 @@ class QuadtreeWorker {
   std::array<bool, 3> by_column_{};
   vm::Workspace workspace_;
   std::array<vm::Specialiser, kLevels> specialisers_;
-  std::array<vm::Part, kLevels> parts_;
+  std::array<vm::PrunedProgram, kLevels> parts_;
   alignas(64) float lo_[3][vm::kEnclosedBoxes], hi_[3][vm::kEnclosedBoxes];
 };
 
@@ -143,10 +144,9 @@ class QuadtreeWorker {
 std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
                                   SliceValues wanted) {
   std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
-  vm::Expression expression;
-  const bool prunes =
-      expression.read(distance) && (wanted == SliceValues::Sign || expression.choices().size() >= kLeastChoices);
-  const vm::Part part = vm::whole(distance);
+  vm::DefUseGraph graph;
+  const bool prunes = graph.read(distance) && (wanted == SliceValues::Sign || graph.choices().size() >= kMinChoices);
+  const vm::PrunedProgram part = vm::whole(distance);
   const int level = prunes ? 0 : kLevels - 1, step = kEdges[level] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   // Several threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing

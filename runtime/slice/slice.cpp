@@ -73,11 +73,11 @@ class DistanceShader {
 
 }  // namespace
 
-Picture sign_picture(const std::vector<float>& field, int width, int height) {
-  Picture picture{width, height, {}};
-  picture.rgb.reserve(3 * field.size());
-  for (const float value : field) picture.rgb.insert(picture.rgb.end(), 3, value < 0 ? 255 : 0);
-  return picture;
+ByteImage sign_image(const std::vector<float>& field, int width, int height) {
+  ByteImage image{width, height, {}};
+  image.rgb.reserve(3 * field.size());
+  for (const float value : field) image.rgb.insert(image.rgb.end(), 3, value < 0 ? 255 : 0);
+  return image;
 }
 
 double band_step(double length) {
@@ -90,17 +90,17 @@ double band_step(double length) {
   return best;
 }
 
-Picture distance_picture(const std::vector<float>& field, int width, int height, double step) {
+ByteImage distance_image(const std::vector<float>& field, int width, int height, double step) {
   const DistanceShader shader(field, width, height, step);
-  Picture picture{width, height, {}};
-  picture.rgb.reserve(3 * field.size());
+  ByteImage image{width, height, {}};
+  image.rgb.reserve(3 * field.size());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const glm::dvec3 color = shader.color(x, y);
-      for (int i = 0; i < 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(color[i] * 255 + 0.5));
+      for (int i = 0; i < 3; ++i) image.rgb.push_back(static_cast<std::uint8_t>(color[i] * 255 + 0.5));
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace fathom::runtime

@@ -16,14 +16,14 @@ std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Sli
                                   SliceValues wanted = SliceValues::Exact);
 
 // Returns an image that is white where the value is negative and black elsewhere, without shades between.
-Picture sign_picture(const std::vector<float>& field, int width, int height);
+ByteImage sign_image(const std::vector<float>& field, int width, int height);
 
-// Returns the step between the bands of distance_picture(): 1, 2 or 5 times a power of ten, whichever is nearest to a
+// Returns the step between the bands of distance_image(): 1, 2 or 5 times a power of ten, whichever is nearest to a
 // tenth of `length`.
 double band_step(double length);
 
 // Returns an image that is blue inside and orange outside, fainter with the distance. The line of value 0 is black. A
 // thin line at every multiple of `step` has the hue of its side. NaN is magenta.
-Picture distance_picture(const std::vector<float>& field, int width, int height, double step);
+ByteImage distance_image(const std::vector<float>& field, int width, int height, double step);
 
 }  // namespace fathom::runtime

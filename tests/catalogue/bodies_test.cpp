@@ -8,7 +8,7 @@
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::bodies_test {
 namespace {
@@ -207,7 +207,7 @@ TEST_CASE("I13: coplanar cuts leave no skin", "[catalogue]") {
                     half + "}]}]");
   };
   Random random(13);
-  const std::vector<Ray> rays = rays_at_box(random, {0.7, 0.7, 0.7}, 5, test::few(20000));
+  const std::vector<Ray> rays = rays_at_box(random, {0.7, 0.7, 0.7}, 5, test::scaled_cases(20000));
   const Truth nothing = [](const Ray&) { return Real(-1); };
   for (const char* half : {"[1, 1, 1]", "[1, 1.125, 1.125]", "[1, 1, 1.125]"}) {
     const auto scene = cut_by(half);
@@ -222,7 +222,7 @@ TEST_CASE("I13: coplanar cuts leave no skin", "[catalogue]") {
   const Truth walls = [](const Ray& ray) {
     return entry_beside(box_span(ray, {0, 0, 0}, {1, 1, 1}), box_span(ray, {0, 0, 0}, {0.5, 1, 0.5}));
   };
-  const std::vector<Ray> through = rays_at_box(random, {0.5, 1, 0.5}, 5, test::few(20000));
+  const std::vector<Ray> through = rays_at_box(random, {0.5, 1, 0.5}, 5, test::scaled_cases(20000));
   const Judgement found = judge(march(make_field(scene), through), through, walls);
   expect_right(found);
   CHECK(found.p99() <= 5e-6);

@@ -13,7 +13,7 @@
 namespace fathom::catalogue::combinators_test {
 namespace {
 
-using tests::compiled_objects;
+using test::compiled_objects;
 
 const std::string kBallAndBox = R"([{"type": "sphere", "radius": 1}, {"type": "box", "half_size": [0.5, 1.5, 1]}])";
 

@@ -41,9 +41,9 @@ inline Places places(const compiler::CompiledScene& scene, const std::vector<Ray
   return places;
 }
 
-// Ray that leaves a hit in a direction on the normal's side. Its origin is offset from the surface by spawn().
+// Ray that leaves a hit in a direction on the normal's side. Its origin is offset from the surface by spawn_origin().
 inline Ray departure(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction) {
-  Ray ray{spawn(hit, point, false), direction};
+  Ray ray{spawn_origin(hit, point, false), direction};
   ray.side = hit.side;
   ray.slope = static_cast<float>(glm::dot(glm::dvec3(point.normal), direction));
   return ray;

@@ -19,7 +19,7 @@
 namespace fathom::catalogue::extremes_test {
 namespace {
 
-using tests::compiled_objects;
+using test::compiled_objects;
 
 std::string mandelbulb(int power, int iterations, const char* detail) {
   return R"({"type": "mandelbulb", "power": )" + std::to_string(power) + R"(, "iterations": )" +
@@ -77,7 +77,7 @@ namespace {
 struct Orbits {
   // Orbits that stay for two hundred steps, and orbits that leave within twelve. Later departures are chaotic and
   // differ in double.
-  int stay = 0, leave = 0;
+  int stay = 0, spawn_ray = 0;
   // Points with a positive value among those that stay, and with a negative value among those that leave.
   int shown_outside = 0, shown_inside = 0;
 };
@@ -95,7 +95,7 @@ Orbits orbits(int power) {
       ++found.stay;
       found.shown_outside += vm::evaluate_distance(blurred.distance, p, workspace) >= 0;
     } else if (time <= 12) {
-      ++found.leave;
+      ++found.spawn_ray;
       found.shown_inside += vm::evaluate_distance(sharp.distance, p, workspace) <= 0;
     }
   }
@@ -107,8 +107,8 @@ Orbits orbits(int power) {
 TEST_CASE("F7: what leaves is outside the Mandelbulb", "[catalogue]") {
   for (const int power : {2, 8}) {
     const Orbits found = orbits(power);
-    INFO("power " << power << ": " << found.stay << " stay, " << found.leave << " leave");
-    CHECK(found.leave > 2000);
+    INFO("power " << power << ": " << found.stay << " stay, " << found.spawn_ray << " leave");
+    CHECK(found.spawn_ray > 2000);
     CHECK(found.shown_inside == 0);
   }
 }
@@ -118,7 +118,7 @@ TEST_CASE("F7: what leaves is outside the Mandelbulb", "[catalogue]") {
 TEST_CASE("F7: what stays is inside the Mandelbulb", "[unmet][.]") {
   for (const int power : {2, 8}) {
     const Orbits found = orbits(power);
-    INFO("power " << power << ": " << found.stay << " stay, " << found.leave << " leave");
+    INFO("power " << power << ": " << found.stay << " stay, " << found.spawn_ray << " leave");
     CHECK(found.stay > 200);
     CHECK(found.shown_outside == 0);
   }

@@ -16,7 +16,7 @@
 namespace fathom::catalogue::fields_test {
 namespace {
 
-using tests::compiled_objects;
+using test::compiled_objects;
 
 constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
 

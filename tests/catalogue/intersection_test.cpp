@@ -8,7 +8,7 @@
 
 #include "runtime/march/certify.h"
 #include "tests/catalogue/naive.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::intersection_test {
 namespace {
@@ -79,7 +79,7 @@ TEST_CASE("I3: near misses of a sphere miss it", "[catalogue]") {
   for (const RayHit& ray_hit : result.ray_hits) {
     const Ray& ray = rays[ray_hit.id];
     false_hits += ray_hit.status == RayHit::Status::Hit && gap_of(ray) > 4e-7L;
-    const Certified certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
+    const CertifiedResult certified = certify(field, ray.origin, ray.direction, 1, {0, 10, 0}, scratch);
     false_certified += certified.status == RayHit::Status::Hit;
   }
   CHECK(false_hits == 0);
@@ -203,7 +203,7 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
     const auto scene = scene_of("\"objects\": [" + plate + "]");
     Random random(6);
     std::vector<Ray> rays;
-    while (static_cast<int>(rays.size()) < test::few(2400)) {
+    while (static_cast<int>(rays.size()) < test::scaled_cases(2400)) {
       const glm::dvec3 d = random.direction(), through(random.uniform(-0.7, 0.7), 0, random.uniform(-0.7, 0.7));
       if (std::abs(d.y) > 0.1) rays.push_back({to_float(through - 5.0 * d), to_float(d)});
     }
@@ -231,7 +231,7 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
 TEST_CASE("I8: a sphere from a hundred thousand units away", "[catalogue]") {
   const auto scene = scene_of(kSphere);
   const Field field = make_field(scene);
-  const std::vector<Ray> near = rays_at_sphere(test::few(20000), 5), far = rays_at_sphere(test::few(20000), 1e5);
+  const std::vector<Ray> near = rays_at_sphere(test::scaled_cases(20000), 5), far = rays_at_sphere(test::scaled_cases(20000), 1e5);
   const Judgement here = judge(march(field, near), near, sphere_distance);
   const Judgement there = judge(march(field, far), far, sphere_distance);
   CHECK(there.wrong() == 0);

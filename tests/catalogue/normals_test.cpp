@@ -14,7 +14,7 @@
 namespace fathom::catalogue::normals_test {
 namespace {
 
-using tests::compiled_objects;
+using test::compiled_objects;
 
 // Point and normal on a solid's surface, in the solid's coordinates.
 struct Place {

@@ -10,7 +10,7 @@
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
 #include "tests/runtime/estimate.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::shadows_test {
 namespace {
@@ -67,7 +67,7 @@ int wrong_shadows(int count) {
 }  // namespace
 
 TEST_CASE("S1: no surface lit at 89 degrees shadows itself", "[catalogue]") {
-  CHECK(wrong_shadows(test::few(30000)) == 0);
+  CHECK(wrong_shadows(test::scaled_cases(30000)) == 0);
 }
 
 TEST_CASE("S1: a million rays to a light at 89 degrees, from each of three surfaces", "[nightly][.]") {
@@ -145,7 +145,7 @@ double light_beside_the_ball(double x, double z) {
 // The camera looks down at 2 degrees, under the ball. The first row of the floor is 0.01 from the contact.
 TEST_CASE("S3: the shadow beside a ball that all but touches a floor", "[catalogue]") {
   constexpr int kWidth = 48, kHeight = 12;
-  const int samples = test::few(128);
+  const int samples = test::scaled_cases(128);
   const double sine = std::sin(M_PI / 90), pixel = 0.02 / kWidth, row = pixel / sine,
                middle = 0.01 + kHeight / 2 * row;
   const RenderResult result =

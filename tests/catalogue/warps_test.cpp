@@ -131,7 +131,7 @@ Line random_line(const Case& c, Random& random) {
   return {dvec3(glm::vec3(from)), dvec3(glm::vec3(glm::normalize(target - from)))};
 }
 
-enum class Outcome { Miss, Hit, Contact };
+enum class Outcome { Miss, Hit, NearMiss };
 struct Truth {
   Outcome outcome;
   double t;
@@ -144,28 +144,28 @@ Truth search(const Case& c, const Line& line) {
   const double middle = -glm::dot(line.origin, line.direction) / glm::dot(line.direction, line.direction);
   const double square = c.radius * c.radius - glm::dot(line.at(middle), line.at(middle));
   if (square <= 0) return {Outcome::Miss, 0};
-  struct Part {
+  struct PrunedProgram {
     double a, fa, b, fb;
   };
   const double begin = middle - std::sqrt(square), end = middle + std::sqrt(square);
-  std::vector<Part> parts = {{begin, c.field(line.at(begin)), end, c.field(line.at(end))}};
-  bool contact = false;
+  std::vector<PrunedProgram> parts = {{begin, c.field(line.at(begin)), end, c.field(line.at(end))}};
+  bool near_miss = false;
   while (!parts.empty()) {
-    const Part p = parts.back();
+    const PrunedProgram p = parts.back();
     parts.pop_back();
     if (p.fa <= 0) return {Outcome::Hit, p.a};
     if (p.fb > 0 && p.fa + p.fb > c.lipschitz * (p.b - p.a)) continue;
     const double m = (p.a + p.b) / 2;
     if (p.b - p.a < kResolution) {
       if (p.fb <= 0) return {Outcome::Hit, m};
-      contact = true;
+      near_miss = true;
       continue;
     }
     const double fm = c.field(line.at(m));
     parts.push_back({m, fm, p.b, p.fb});
     parts.push_back({p.a, p.fa, m, fm});
   }
-  return {contact ? Outcome::Contact : Outcome::Miss, 0};
+  return {near_miss ? Outcome::NearMiss : Outcome::Miss, 0};
 }
 
 constexpr double kGross = 0.02;  // scene units: a hit that is this far off is on another surface
@@ -182,13 +182,13 @@ Truth naive(const Case& c, const Line& line) {
 }
 
 struct Tally {
-  int rays = 0, hits = 0, contacts = 0, wrong = 0, naive_wrong = 0;
+  int rays = 0, hits = 0, near_misses = 0, wrong = 0, naive_wrong = 0;
   double worst = 0;  // max error of a hit, scene units
   double evaluations = 0;
 };
 
 Tally tally(const Case& c, int count) {
-  const compiler::CompiledScene scene = tests::compiled_objects(c.node);
+  const compiler::CompiledScene scene = test::compiled_objects(c.node);
   CHECK(scene.certified);
   Random random(11);
   std::vector<Line> lines;
@@ -203,8 +203,8 @@ Tally tally(const Case& c, int count) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const Truth truth = search(c, lines[i]);
     result.hits += truth.outcome == Outcome::Hit;
-    result.contacts += truth.outcome == Outcome::Contact;
-    if (truth.outcome == Outcome::Contact) continue;
+    result.near_misses += truth.outcome == Outcome::NearMiss;
+    if (truth.outcome == Outcome::NearMiss) continue;
     const auto wrong = [&](bool hit, double t) {
       return hit != (truth.outcome == Outcome::Hit) || (hit && std::abs(t - truth.t) > kGross);
     };
@@ -224,7 +224,7 @@ void expect_right(const std::string& row, int count) {
   for (const Case& c : cases()) {
     if (row != c.row) continue;
     const Tally result = tally(c, count);
-    INFO(c.name << ": " << result.hits << " hits, " << result.contacts << " contacts");
+    INFO(c.name << ": " << result.hits << " hits, " << result.near_misses << " contacts");
     CHECK(result.wrong == 0);
     CHECK(result.hits > count / 15);
     CHECK(result.naive_wrong > count / 100);
@@ -251,7 +251,7 @@ TEST_CASE("F3 and F4: a hundred thousand rays at each", "[nightly][.]") {
               "evals");
   for (const Case& c : cases()) {
     const Tally r = tally(c, 100000);
-    std::printf("%-24s %8d %8d %8d %8d %10.2f %10.2g %8.1f\n", c.name, r.rays, r.hits, r.contacts, r.wrong,
+    std::printf("%-24s %8d %8d %8d %8d %10.2f %10.2g %8.1f\n", c.name, r.rays, r.hits, r.near_misses, r.wrong,
                 100.0 * r.naive_wrong / r.rays, r.worst, r.evaluations);
     CHECK(r.wrong == 0);
   }

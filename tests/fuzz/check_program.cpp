@@ -252,10 +252,10 @@ bool agrees(float whole, float part, float least, float most) {
   return part == whole || (std::isnan(part) && std::isnan(whole));
 }
 
-void check_part(const vm::VerifiedProgram& whole, const vm::Part& part, const Cloud& cloud, float least, float most,
+void check_part(const vm::VerifiedProgram& whole, const vm::PrunedProgram& part, const Cloud& cloud, float least, float most,
                 vm::Workspace& workspace) {
   vm::Program program;
-  program.words = part.words, program.wide = part.wide, program.locals = part.locals;
+  program.words = part.words, program.doubles = part.doubles, program.locals = part.locals;
   const auto verified = vm::verify(std::move(program));
   if (const auto* error = std::get_if<vm::VerifyError>(&verified)) throw BrokenPromise("a part: " + error->reason);
   const std::vector<float> a = distances(whole, cloud, workspace), b = distances(part, cloud, workspace);
@@ -266,15 +266,15 @@ void check_part(const vm::VerifiedProgram& whole, const vm::Part& part, const Cl
 }
 
 void check_parts(const vm::VerifiedProgram& program, const BoxSet& boxes, Random& random, vm::Workspace& workspace) {
-  const vm::Part whole = vm::whole(program);
+  const vm::PrunedProgram whole = vm::whole(program);
   vm::Specialiser specialiser;
-  if (!specialiser.look(whole, boxes.view(), workspace)) return;
+  if (!specialiser.enclose_choices(whole, boxes.view(), workspace)) return;
   static const float kLimits[][2] = {{-kInfinity, kInfinity}, {-kInfinity, 0.25f}, {0, 0}};
   for (const auto& [least, most] : kLimits) {
-    specialiser.decide(least, most);
+    specialiser.resolve(least, most);
     for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 5) {
-      vm::Part part;
-      specialiser.part(box, part);
+      vm::PrunedProgram part;
+      specialiser.prune(box, part);
       check_part(program, part, points_in(boxes, box, random), least, most, workspace);
     }
   }

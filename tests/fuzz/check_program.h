@@ -7,7 +7,7 @@
 namespace fathom::fuzz {
 
 // Programs above this cost take longer than a fuzz run allows, and reveal nothing new.
-inline constexpr std::uint32_t kMostCost = 20'000;  // multiply-adds per point
+inline constexpr std::uint32_t kMaxCost = 20'000;  // multiply-adds per point
 
 // Checks a program at random points and in random boxes within about `reach` of the origin. The bits are equal for
 // one point at a time and for many, on every instruction set, in float and in double. The surface's distance is the

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "compiler/artefact/load.h"
+#include "compiler/artefact/compiled_file.h"
 #include "compiler/artefact/programs.h"
 #include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/read_scene.h"
@@ -11,7 +11,7 @@
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/draw_small.h"
-#include "vm/prune/expression.h"
+#include "vm/prune/def_use_graph.h"
 
 namespace fathom::fuzz {
 namespace {
@@ -20,7 +20,7 @@ using compiler::Diagnostics;
 using compiler::Source;
 
 void check_cheap(const vm::VerifiedProgram& program, test::Random& random, double reach) {
-  if (program.cost() <= kMostCost) check_program(program, random, reach);
+  if (program.cost() <= kMaxCost) check_program(program, random, reach);
 }
 
 // Checks that a written file reads back as the same scene.
@@ -72,11 +72,11 @@ void check_scene(const std::string& text) {
 void check_stored(const compiler::CompiledScene& scene) {
   test::Random random(scene.distance.instructions());
   for (const compiler::NamedProgram& row : compiler::programs_of(scene)) {
-    if (row.program->cost() > kMostCost) continue;
+    if (row.program->cost() > kMaxCost) continue;
     check_evaluation(*row.program, random, 4);
-    vm::Expression().read(*row.program);
+    vm::DefUseGraph().read(*row.program);
   }
-  test::draw_small(compiler::unproved(scene));
+  test::draw_small(scene);
 }
 
 }  // namespace fathom::fuzz

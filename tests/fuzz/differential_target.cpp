@@ -27,11 +27,11 @@ using compiler::Scene;
 using glm::dvec3;
 using test::Random;
 
-constexpr std::size_t kMostInstructions = 3000;
+constexpr std::size_t kMaxInstructions = 3000;
 constexpr std::size_t kComparedPoints = 12;
 
 vm::VerifiedProgram lowered(const Scene& scene) {
-  auto code = compiler::lower(scene.graph, scene.root, compiler::Source{}, 100 * kMostInstructions);
+  auto code = compiler::lower(scene.graph, scene.root, compiler::Source{}, 100 * kMaxInstructions);
   promise(code.has_value(), "a graph that was small has a program");
   return test::verified(std::move(*code));
 }
@@ -120,7 +120,7 @@ void check_regions(const Scene& scene, const vm::VerifiedProgram& program, Rando
   runtime::RegionOptions options;
   options.always = true;
   options.memory = 1u << 20;
-  options.magnitude = static_cast<float>(known[scene.root].magnitude);
+  options.cancellation = static_cast<float>(known[scene.root].cancellation);
   const auto regions = runtime::Regions::build(program, contents, options);
   if (!regions) return;
   std::vector<float> x, y, z;
@@ -151,7 +151,7 @@ void run_differential(Bytes input) {
   options.mandelbulbs = (input[0] >> 2) % 8 == 0;
   const Scene scene = test::random_scene(random, options);
   const vm::VerifiedProgram plain = test::plain_lowering(scene);
-  if (plain.instructions() > kMostInstructions) return;
+  if (plain.instructions() > kMaxInstructions) return;
   vm::Workspace workspace;
   Sampled sampled;
   for (std::size_t i = 0; i < kComparedPoints; ++i) {

@@ -14,7 +14,7 @@ namespace fathom::fuzz {
 namespace {
 
 constexpr runtime::ReadLimits kFilmLimits{64e6};
-constexpr std::size_t kMostSums = 1 << 20;  // bytes; a header that asks for more gets the sums in the input
+constexpr std::size_t kMaxSums = 1 << 20;  // bytes; a header that asks for more gets the sums in the input
 
 void put_checked(vm::ByteWriter& out, Bytes bytes) {
   const vm::Digest digest = vm::digest(bytes);
@@ -43,7 +43,7 @@ Input sealed_film(Bytes head, vm::ByteReader sums) {
   put_checked(out, head);
   vm::ByteReader reader(head);
   runtime::FilmFile file;
-  if (!runtime::read_shape(reader, file) && runtime::sums_size(file.shape) <= kMostSums) {
+  if (!runtime::read_shape(reader, file) && runtime::sums_size(file.shape) <= kMaxSums) {
     put_sums(out, file.shape, sums);
   } else {
     out.raw(sums.raw(sums.left()));
@@ -55,14 +55,14 @@ void run_file(const Input& bytes) {
   const ScratchFile given("given.film"), written("written.film");
   write_file(given.path, bytes);
   const auto read = runtime::read_film(given.path, kFilmLimits);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
+  if (const auto* unread = std::get_if<runtime::FilmReadError>(&read)) {
     return promise(!unread->problem.empty(), "a refusal has a reason");
   }
   const auto& film = std::get<runtime::FilmFile>(read);
   for (const runtime::Coverage& covered : film.render.covered) {
-    if (covered.blocks().size() >= 100) continue;  // tidy() is quadratic in their number
+    if (covered.blocks().size() >= 100) continue;  // canonicalise() is quadratic in their number
     runtime::Coverage form = covered;
-    form.tidy();
+    form.canonicalise();
     promise(form == covered, "what is covered is in its one form");
   }
   promise(!runtime::write_film(film.header, film.render, written.path), "what is read can be written");
@@ -95,7 +95,7 @@ std::vector<Input> seeds_of_film() {
       for (runtime::Coverage& covered : render.covered) {
         for (const std::uint32_t first : {0, 5}) covered.add({{2, 2, 20, 3}, {first, first + 2}});
         covered.add({{4, 1, 9, 2}, {0, 1}});
-        covered.tidy();
+        covered.canonicalise();
       }
       const runtime::FilmHeader header{{{"spp", "8"}, {"seed", "0"}},
                                        {{"list", std::vector<std::string>{"a", ""}},

@@ -44,7 +44,7 @@ void run_picture(Bytes input) {
       promise(channel.size() == image->area.pixels(), "a channel has as many values as there are pixels");
     }
   } else {
-    promise(!std::get<runtime::UnreadImage>(read).problem.empty(), "there is a reason");
+    promise(!std::get<runtime::ImageReadError>(read).problem.empty(), "there is a reason");
   }
   if (ending == "hdr" || ending == "exr") check_environment(file.path);
 }

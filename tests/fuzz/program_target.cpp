@@ -5,7 +5,7 @@
 // The reader refuses an input with a reason, or the result writes as the same bytes and can run.
 #include <algorithm>
 
-#include "compiler/artefact/load.h"
+#include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
 #include "tests/fuzz/check_program.h"
 #include "tests/fuzz/check_scene.h"
@@ -53,7 +53,7 @@ void run_bare_program(Bytes input) {
   const auto size = static_cast<std::ptrdiff_t>(reader.offset());
   promise(writer.bytes() == Input(input.begin(), input.begin() + size), "what is written is what was read");
   test::Random random(input.size());
-  if (program->cost() <= kMostCost) check_evaluation(*program, random);
+  if (program->cost() <= kMaxCost) check_evaluation(*program, random);
 }
 
 }  // namespace

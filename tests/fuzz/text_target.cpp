@@ -78,7 +78,7 @@ void run_text(Bytes input) {
           "what is laid out stays");
   if (!read || diagnostics.has_errors() || read->format != compiler::SceneFormat::Text) return;
   compiler::Diagnostics none;
-  const auto kept = compiler::read_kept(source, none, small_limits(), imports);
+  const auto kept = compiler::read_with_formulas(source, none, small_limits(), imports);
   promise(kept.has_value(), "what is read once is read again");
   check_scene(compiler::write_json(kept->file));
 }

@@ -19,7 +19,7 @@ namespace fathom::hostile_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(FATHOM_SOURCE_DIR) / "tests/hostile";
@@ -90,7 +90,7 @@ void make_files(const Folder& folder, const Case& hostile) {
 }
 
 // Processor time; the sanitizers take many times as long.
-rlim_t most_seconds() { return is_sanitized() ? 300 : 30; }
+rlim_t max_seconds() { return is_sanitized() ? 300 : 30; }
 
 struct Outcome {
   int code = -1;  // exit status, or minus 1000 plus the number of the signal that ended the program
@@ -102,7 +102,7 @@ struct Outcome {
 Outcome outcome_of(const Folder& folder, const std::string& arguments) {
   const std::string out = folder.path().string() + ".out", err = folder.path().string() + ".err";
   const std::string command = "exec '" + program_path() + "' " + arguments;
-  const rlimit seconds{most_seconds(), most_seconds()};
+  const rlimit seconds{max_seconds(), max_seconds()};
   const pid_t child = fork();
   REQUIRE(child >= 0);
   if (child == 0) {

@@ -33,7 +33,7 @@ const char* const kSpinning = R"({
 compiler::CompiledScene at(double time, const char* text = kSpinning) {
   compiler::CompileOptions options;
   options.definitions = {{"time", time}};
-  return tests::compiled(text, options);
+  return test::compiled(text, options);
 }
 
 // The scenes that a shutter sees while it is open for `open` seconds, and the options for them.
@@ -47,8 +47,8 @@ struct Blurred {
     options.seed = seed;
     options.layers = runtime::kAllLayers;
     options.layers.halves = true;
-    const auto runs = runtime::shutter_runs(spp, times, seed, 0);
-    for (const runtime::ShutterRun& run : runs) scenes.push_back(at(open * run.time));
+    const auto runs = runtime::shutter_intervals(spp, times, seed, 0);
+    for (const runtime::ShutterInterval& run : runs) scenes.push_back(at(open * run.time));
     for (std::size_t i = 0; i < runs.size(); ++i) options.moments.push_back({&scenes[i], runs[i].samples});
   }
 

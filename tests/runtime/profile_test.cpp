@@ -8,7 +8,7 @@
 
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
 #include "vm/interpret/evaluate.h"
 
@@ -52,7 +52,7 @@ TEST_CASE("profile: the same picture and counts with and without", "[render]") {
 TEST_CASE("profile: every stage takes time, and all of them a thread's", "[render]") {
   const auto scene = scene_of(kScene);
   for (const int threads : {1, 2}) {
-    RenderOptions options = options_of(160, 90, test::few(16));
+    RenderOptions options = options_of(160, 90, test::scaled_cases(16));
     options.threads = threads;
     options.profile = true;
     // No stage includes the film's allocation and the start and end of threads. A busy machine can prolong these, but
@@ -100,7 +100,7 @@ TEST_CASE("profile: a wider register has more lanes to spare", "[render]") {
     const MarchCounters counters = render(scene, options).stats.march;
     INFO(isa);
     // The sanitized build supports fewer widths than instruction sets (CMakeLists.txt).
-    CHECK((counters.lanes < last || (tests::is_sanitized() && counters.lanes == last)));
+    CHECK((counters.lanes < last || (test::is_sanitized() && counters.lanes == last)));
     CHECK(counters.lanes >= counters.evaluations - counters.certified_evaluations);
     if (evaluations > 0) CHECK(counters.evaluations == evaluations);
     last = counters.lanes;

@@ -40,8 +40,8 @@ struct Bits {
 };
 
 Bits bits_of(const std::string& render) {
-  const tests::Folder folder;
-  const tests::Result result =
+  const test::Folder folder;
+  const test::Result result =
       folder.run("render " FATHOM_SOURCE_DIR "/scenes/" + render + " -q --size 8x8 -o a.film");
   INFO(render << "\n" << result.err);
   REQUIRE(result.code == 0);
@@ -56,7 +56,7 @@ Bits bits_of(const std::string& render) {
 TEST_CASE("renderer bits: what changes them raises kRendererBits of runtime/cli/picture/render_identity.h") {
   const std::filesystem::path path = std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/golden/renderer/bits.txt";
   std::map<std::string, Bits> known;
-  std::istringstream lines(tests::read_file(path));
+  std::istringstream lines(test::read_file(path));
   for (std::string render, renderer, program, film; std::getline(lines, render);) {
     lines >> renderer >> program >> film >> std::ws;
     known[render] = {renderer, program, film};
@@ -79,7 +79,7 @@ TEST_CASE("renderer bits: what changes them raises kRendererBits of runtime/cli/
     return;
   }
   INFO("run with FATHOM_UPDATE_GOLDEN=1 once scenes, programs or kRendererBits have changed");
-  CHECK(tests::read_file(path) == text);
+  CHECK(test::read_file(path) == text);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace fathom::runtime {
 
 // Compiles the scene `json`, to which "version" is added. Fails the test when the compiler refuses the scene.
 inline compiler::CompiledScene scene_of(const std::string& json) {
-  return tests::compiled("{\"version\": 1, " + json + "}");
+  return test::compiled("{\"version\": 1, " + json + "}");
 }
 
 }  // namespace fathom::runtime

@@ -35,10 +35,10 @@ std::vector<fs::path> scene_files() {
 }
 
 CompiledScene compile_file(const fs::path& file) {
-  const Source source(file.filename().string(), tests::read_file(file));
+  const Source source(file.filename().string(), test::read_file(file));
   Diagnostics diagnostics;
   CompileOptions options;
-  options.imports = tests::imports_from(file.parent_path());
+  options.imports = test::imports_from(file.parent_path());
   auto scene = compile(source, diagnostics, options);
   CHECK(diagnostics.print(source, ErrorFormat::Text) == "");
   REQUIRE(scene);
@@ -121,7 +121,7 @@ TEST_CASE("scenes open with a comment and compile without a word", "[scenes][rel
   REQUIRE(scene_files().size() >= 5);
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());
-    CHECK(tests::read_file(file).starts_with("//"));
+    CHECK(test::read_file(file).starts_with("//"));
     compile_file(file);
   }
 }
@@ -133,7 +133,7 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heav
     // These scenes are for show: they run the same code as the others, but take longer. scripts/pictures renders
     // them.
     const fs::path folder = file.parent_path().filename();
-    if (folder == "gallery" || folder == "lib" || tests::read_file(file).find("\nimport ") != std::string::npos)
+    if (folder == "gallery" || folder == "lib" || test::read_file(file).find("\nimport ") != std::string::npos)
       continue;
     const CompiledScene scene = compile_file(file);
     if (scene.node_count > 500) continue;  // minutes of rendering; scripts/measure counts this scene's hits

@@ -23,7 +23,7 @@ namespace fathom::shared_graphs_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using test::Random;
 
 // `doubled`: a node in which $ stands for the previous node, applied forty times.
@@ -103,7 +103,7 @@ TEST_CASE("shared graphs: every verb visits a node that is used in many ways onc
 // them.
 struct Examples {
   Examples() {
-    const std::string page = tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/gallery.md"), begin = "```json\n";
+    const std::string page = test::read_file(FATHOM_SOURCE_DIR "/docs/reference/gallery.md"), begin = "```json\n";
     for (std::size_t at = page.find(begin); at != page.npos; at = page.find(begin, at)) {
       at += begin.size();
       const std::string text = page.substr(at, page.find("```", at) - at);

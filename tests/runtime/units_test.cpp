@@ -8,19 +8,19 @@ namespace {
 TEST_CASE("units: rounds follow one another, short at first, and never long") {
   for (const SampleRange samples : {SampleRange{0, 1}, {0, 16}, {0, 17}, {0, 5000}, {3, 9}, {100, 1000}, {31, 33}}) {
     std::uint32_t at = samples.first;
-    for (const SampleRange round : rounds_of(samples)) {
+    for (const SampleRange round : split_into_rounds(samples)) {
       CHECK(round.first == at);
       CHECK(round.last > round.first);
-      CHECK(round.size() <= kMostInRound);
+      CHECK(round.size() <= kMaxInRound);
       at = round.last;
     }
     CHECK(at == samples.last);
   }
-  CHECK(rounds_of({0, 16}).size() == 1);
-  CHECK(rounds_of({0, 64}) == std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}});
+  CHECK(split_into_rounds({0, 16}).size() == 1);
+  CHECK(split_into_rounds({0, 64}) == std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}});
   // A part of a render begins with short rounds as well, wherever it begins.
-  CHECK(rounds_of({20, 60}) == std::vector<SampleRange>{{20, 36}, {36, 52}, {52, 60}});
-  CHECK(rounds_of({512, 1024}, 1).front() == SampleRange{512, 513});
+  CHECK(split_into_rounds({20, 60}) == std::vector<SampleRange>{{20, 36}, {36, 52}, {52, 60}});
+  CHECK(split_into_rounds({512, 1024}, 1).front() == SampleRange{512, 513});
 }
 
 TEST_CASE("units: a queue gives what is left, each sample once") {
@@ -28,9 +28,9 @@ TEST_CASE("units: a queue gives what is left, each sample once") {
   Coverage covered;
   covered.add({{3, 5, 20, 31}, {0, 20}});
   covered.add({{20, 5, 50, 6}, {7, 40}});
-  covered.tidy();
+  covered.canonicalise();
   for (const int side : {1, 7, 16, 64}) {
-    UnitQueue queue(area, side, rounds_of({0, 40}), covered);
+    UnitQueue queue(area, side, split_into_rounds({0, 40}), covered);
     Coverage sum = covered;
     std::uint64_t samples = covered.size();
     while (const auto unit = queue.take()) {
@@ -39,7 +39,7 @@ TEST_CASE("units: a queue gives what is left, each sample once") {
       samples += unit->size();
       sum.add(*unit);
     }
-    sum.tidy();
+    sum.canonicalise();
     CHECK(samples == SampleBlock{area, {0, 40}}.size());
     CHECK(sum.blocks() == std::vector<SampleBlock>{{area, {0, 40}}});
   }
@@ -47,7 +47,7 @@ TEST_CASE("units: a queue gives what is left, each sample once") {
 
 TEST_CASE("units: the whole picture's first samples come before any pixel's last") {
   const Coverage nothing;
-  UnitQueue queue({0, 0, 64, 64}, 16, rounds_of({0, 64}), nothing);
+  UnitQueue queue({0, 0, 64, 64}, 16, split_into_rounds({0, 64}), nothing);
   std::uint32_t last = 0;
   while (const auto unit = queue.take()) {
     CHECK(unit->samples.first >= last);

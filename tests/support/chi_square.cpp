@@ -14,7 +14,7 @@ namespace {
 // Gauss-Legendre quadrature rule of 3 points on [-1,1].
 constexpr std::array<double, 3> kPlaces{-0.7745966692414834, 0, 0.7745966692414834};
 constexpr std::array<double, 3> kWeights{5.0 / 9, 8.0 / 9, 5.0 / 9};
-constexpr int kMostDepth = 7, kMostGuidedDepth = 12;
+constexpr int kMaxDepth = 7, kMaxGuidedDepth = 12;
 constexpr std::size_t kGuides = 8;  // max per cell
 
 // Polar angle and azimuth, the azimuth in [-pi,pi].
@@ -51,7 +51,7 @@ class Integral {
   // Integrates over at least four parts of the cell, so that no peak hides between the rule's points.
   double over(const Cell& c) const {
     double sum = 0;
-    for (const Cell& part : quarters(c)) sum += refine(part, rule(part), kMostDepth);
+    for (const Cell& part : quarters(c)) sum += refine(part, rule(part), kMaxDepth);
     return sum;
   }
 
@@ -207,7 +207,7 @@ double sphere_integral(const DirectionPdf& f, const SphereRule& rule) {
     Cell above = cell, below = cell;
     above.theta1 = below.theta0 = std::clamp(rule.step.value_or(0), cell.theta0, cell.theta1);
     for (const Cell& part : {above, below}) {
-      if (part.theta0 < part.theta1) sum += integral.guided(part, places, kMostGuidedDepth);
+      if (part.theta0 < part.theta1) sum += integral.guided(part, places, kMaxGuidedDepth);
     }
   }
   return sum;

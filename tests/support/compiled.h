@@ -8,7 +8,7 @@
 #include "compiler/compile.h"
 #include "compiler/frontend/formats/write_json.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 // Compiles a text in any scene format.
 inline compiler::CompiledScene compiled(const std::string& text, const compiler::CompileOptions& options = {}) {
@@ -33,4 +33,4 @@ inline compiler::CompiledScene compiled_objects(const std::string& objects,
   return compiled(R"({"version": 1, "objects": [)" + objects + "]}", options);
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

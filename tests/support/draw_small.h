@@ -10,8 +10,8 @@ namespace fathom::test {
 
 // Renders nothing if the environment map is a file or the distance program is long.
 inline void draw_small(const compiler::CompiledScene& scene) {
-  constexpr std::uint32_t kMostCost = 2000;  // multiply-adds per point
-  if (scene.background.type == compiler::Background::Type::Image || scene.distance.cost() > kMostCost) return;
+  constexpr std::uint32_t kMaxCost = 2000;  // multiply-adds per point
+  if (scene.background.type == compiler::Background::Type::Image || scene.distance.cost() > kMaxCost) return;
   runtime::RenderOptions options;
   options.threads = 1, options.width = 4, options.height = 3, options.spp = 1, options.rr_depth = 1;
   runtime::render(scene, options);

@@ -39,7 +39,7 @@ std::vector<double> random_immediates(const vm::OpcodeInfo& row, std::uint32_t w
 // Returns the smallest program that uses the opcode `row` with this operand and random immediates.
 vm::Program program_of(const vm::OpcodeInfo& row, std::uint32_t operand, Random& random) {
   vm::Program program;
-  const bool joined = row.form == Form::Shape && (operand & vm::kJoined) != 0;
+  const bool joined = row.form == Form::Shape && (operand & vm::kFusedMin) != 0;
   const vm::Sources sources = vm::sources_of(vm::opcode_word(row.opcode, operand));
   const bool function = row.form == Form::Unary || row.form == Form::Binary;
   if (joined || (function && sources.a == Source::Stack)) program.append(Opcode::X, 0, {}, {});
@@ -69,7 +69,7 @@ void add_opcodes(std::vector<EmittedProgram>& programs, Random& random) {
 // Adds moved and joined shapes, and functions whose operands do not lie on the stack.
 void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
   const vm::OpcodeInfo& box = vm::info(Opcode::Box);
-  for (std::uint32_t modes = 1; modes <= (vm::kMoved | vm::kJoined); ++modes) {
+  for (std::uint32_t modes = 1; modes <= (vm::kFusedTranslate | vm::kFusedMin); ++modes) {
     programs.push_back(named(fmt::format("box_{}", modes), program_of(box, modes, random)));
   }
   constexpr Source kSources[] = {Source::Stack, Source::X, Source::Y, Source::Z, Source::Constant};

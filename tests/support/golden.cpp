@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 namespace fs = std::filesystem;
 
@@ -45,4 +45,4 @@ void check_golden(const std::string& folder, const std::function<std::string(con
   }
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

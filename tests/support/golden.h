@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 // Returns the content of the file.
 std::string read_file(const std::filesystem::path& path);
@@ -18,4 +18,4 @@ std::vector<std::filesystem::path> golden_files(const std::string& folder);
 // CHECKs for each file of the folder that print(input) is the expected output.
 void check_golden(const std::string& folder, const std::function<std::string(const std::string& input)>& print);
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -6,7 +6,7 @@
 #include "compiler/frontend/text/parse/imports.h"
 #include "tests/support/golden.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline compiler::ImportReader imports_from(const std::filesystem::path& folder) {
   return [folder](const std::string& path) -> std::variant<std::string, compiler::ImportFault> {
@@ -17,4 +17,4 @@ inline compiler::ImportReader imports_from(const std::filesystem::path& folder) 
   };
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline std::string grey(double value) {
   const std::string number = std::to_string(value);
@@ -57,7 +57,7 @@ inline LightScene in_sea(const std::string& name, const std::string& sea, const 
 }
 
 // Water outranks the glowing ball of clear glass, so the ball has no surface inside the water and does not emit.
-inline LightScene drowned_lamp() {
+inline LightScene submerged_area_light() {
   return in_sea("a lamp that is not there", R"("type": "sphere", "radius": 10)",
                 R"(, {"type": "sphere", "radius": 0.5, "translate": [0, 3, 3], "material": "glow"}])");
 }
@@ -276,7 +276,7 @@ inline LightScene moon(double degrees) {
 
 // Room with all kinds of lights, glass, a mirror and a rough surface, in which all light sampling strategies must
 // agree.
-inline constexpr const char* kLampRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
+inline constexpr const char* kAreaLightRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
     "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"rr_depth": 4},
     "materials": {"white": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},
       "mirror": {"type": "specular"}, "lamp": {"type": "emissive", "emission": [6, 5, 4]},
@@ -293,4 +293,4 @@ inline constexpr const char* kLampRoom = R"("camera": {"position": [0, 1, 3.6], 
       {"type": "cylinder", "radius": 0.2, "half_height": 0.05, "rotate": [20, 0, 10], "translate": [0, 1.3, -1], "material": "lamp"},
       {"type": "torus", "major_radius": 0.2, "minor_radius": 0.04, "translate": [-0.4, 1.4, 0.4], "material": "lamp"}])";
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

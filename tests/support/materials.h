@@ -34,9 +34,9 @@ struct MaterialCase {
 
   // Relative index of refraction as the BSDF takes it. A material without an interior has the same index from both
   // sides.
-  float eta() const { return inside && material.fills() ? 1 / material.ior : material.ior; }
+  float eta() const { return inside && material.has_interior() ? 1 / material.ior : material.ior; }
   // Like eta(), but as seen from wi's side; `through` is true if wi lies on the other side of the surface.
-  float across(bool through) const { return through && material.fills() ? 1 / eta() : eta(); }
+  float across(bool through) const { return through && material.has_interior() ? 1 / eta() : eta(); }
   Bsdf bsdf(glm::vec3 wo) const { return {material, kNormal, wo, eta(), inside}; }
   // Effective index of refraction of the specular boundary, scaled by specular_weight.
   float bending() const {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline double plain_operation(const std::string& op, double a, double b) {
   if (op == "neg") return -a;
@@ -79,4 +79,4 @@ inline std::vector<double> plain_list(const std::string& text, const std::vector
   return values.at(last);
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

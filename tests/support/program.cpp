@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 std::string program_path() { return FATHOM_PROGRAM; }
 bool is_sanitized() { return FATHOM_SANITIZED; }
@@ -30,4 +30,4 @@ Result Folder::run_script(const std::string& lines) const {
   return result;
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

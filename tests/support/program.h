@@ -10,7 +10,7 @@
 
 #include "tests/support/temporary_folder.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 struct Result {
   int code;
@@ -71,4 +71,4 @@ inline std::pair<int, int> png_size(const std::string& bytes) {
   return {big_endian(16), big_endian(20)};
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -7,7 +7,7 @@
 #include <regex>
 #include <stdexcept>
 
-namespace fathom::tests {
+namespace fathom::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -149,4 +149,4 @@ std::string schema_problem(const Json& value, const Json& schema, const Json& wh
   return *keyword + " " + schema[*keyword].dump().substr(0, 80) + " does not hold for " + value.dump().substr(0, 80);
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 // Returns the first violation in `value` with its location, or an empty string. `schema` is a part of `whole`, in
 // which $ref is resolved.
@@ -17,4 +17,4 @@ inline std::string schema_problem(const nlohmann::json& value, const nlohmann::j
   return schema_problem(value, schema, schema);
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

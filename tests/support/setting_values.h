@@ -5,7 +5,7 @@
 
 #include "compiler/scene/settings.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 // Returns a valid value that is not the default.
 template <typename Record, typename Member>
@@ -19,4 +19,4 @@ compiler::SettingValue<Member> another_value(const compiler::Setting<Record, Mem
   }
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 class TemporaryFolder {
  public:
@@ -31,4 +31,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -10,7 +10,7 @@
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 struct WhiteMaterial {
   std::string json;
@@ -80,4 +80,4 @@ inline double returned(const compiler::CompiledScene& scene, int side, int spp) 
   return (sum - (samples - hits)) / hits;
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -197,11 +197,11 @@ class Assembler {
   std::size_t read_modes(const OpcodeInfo& row, Draft& draft) {
     std::size_t last = tokens_.size();
     if (last > 1 && tokens_[last - 1] == "min") {
-      draft.operand |= kJoined;
+      draft.operand |= kFusedMin;
       --last;
     }
     if (last >= 5 && tokens_[last - 4] == "at") {
-      draft.operand |= kMoved;
+      draft.operand |= kFusedTranslate;
       for (std::size_t i = last - 3; i < last && !error_; ++i) draft.immediates.push_back(number(tokens_[i]));
       last -= 4;
     } else {

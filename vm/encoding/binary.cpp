@@ -25,7 +25,7 @@ constexpr std::string_view kRows =
     ;
 
 bool is_wide(const Program& program, std::size_t word) {
-  return std::bit_cast<std::uint64_t>(program.wide[word]) !=
+  return std::bit_cast<std::uint64_t>(program.doubles[word]) !=
          std::bit_cast<std::uint64_t>(static_cast<double>(std::bit_cast<float>(program.words[word])));
 }
 
@@ -55,14 +55,14 @@ void write_program(ByteWriter& out, const VerifiedProgram& verified) {
   out.u32(verified.max_points());
   out.u32(static_cast<std::uint32_t>(program.words.size()));
   for (const std::uint32_t word : program.words) out.u32(word);
-  std::vector<std::size_t> wide;
+  std::vector<std::size_t> doubles;
   for_each_constant(program.words, [&](std::size_t word) {
-    if (is_wide(program, word)) wide.push_back(word);
+    if (is_wide(program, word)) doubles.push_back(word);
   });
-  out.u32(static_cast<std::uint32_t>(wide.size()));
-  for (const std::size_t word : wide) {
+  out.u32(static_cast<std::uint32_t>(doubles.size()));
+  for (const std::size_t word : doubles) {
     out.u32(static_cast<std::uint32_t>(word));
-    out.f64(program.wide[word]);
+    out.f64(program.doubles[word]);
   }
 }
 
@@ -74,11 +74,11 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
   program.words.resize(in.count(4));
   for (std::uint32_t& word : program.words) word = in.u32();
   if (in.failed()) return cut_off();
-  program.wide.assign(program.words.size(), 0.0);
+  program.doubles.assign(program.words.size(), 0.0);
   std::vector<bool> constant(program.words.size());
   for_each_constant(program.words, [&](std::size_t word) {
     constant[word] = true;
-    program.wide[word] = static_cast<double>(std::bit_cast<float>(program.words[word]));
+    program.doubles[word] = static_cast<double>(std::bit_cast<float>(program.words[word]));
   });
   std::optional<VerifyError> misplaced;  // returned only if the code itself passes the verifier
   std::int64_t last = -1;
@@ -93,7 +93,7 @@ std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Li
       misplaced = VerifyError{word, "an unrounded constant where the code has none"};
       continue;
     }
-    program.wide[word] = value;
+    program.doubles[word] = value;
     if (!is_wide(program, word)) return VerifyError{word, "an unrounded constant that is the rounded one"};
   }
   if (in.failed()) return cut_off();

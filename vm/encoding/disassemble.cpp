@@ -13,7 +13,7 @@ std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_
   if ((row.form != Form::Unary && row.form != Form::Binary) || operand_of(word) == 0) return "";
   const Sources sources = sources_of(word);
   const auto name = [&](Source source) -> std::string {
-    if (source == Source::Constant) return fmt::format(" {}", program.wide[constant++]);
+    if (source == Source::Constant) return fmt::format(" {}", program.doubles[constant++]);
     if (source == Source::Local) return fmt::format(" %{}", sources.local);
     return std::string(" ") + "_xyz"[static_cast<std::size_t>(source)];
   };
@@ -22,14 +22,14 @@ std::string operands(const Program& program, const OpcodeInfo& row, std::uint32_
   return text;
 }
 
-// Returns the text of kMoved and kJoined, e.g. " at 0 1 0 min". `moved`: offset of the translation.
+// Returns the text of kFusedTranslate and kFusedMin, e.g. " at 0 1 0 min". `moved`: offset of the translation.
 std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint32_t word, std::size_t moved) {
   if (row.form != Form::Shape) return "";
   std::string text;
-  if (operand_of(word) & kMoved) {
-    text = fmt::format(" at {} {} {}", program.wide[moved], program.wide[moved + 1], program.wide[moved + 2]);
+  if (operand_of(word) & kFusedTranslate) {
+    text = fmt::format(" at {} {} {}", program.doubles[moved], program.doubles[moved + 1], program.doubles[moved + 2]);
   }
-  return operand_of(word) & kJoined ? text + " min" : text;
+  return operand_of(word) & kFusedMin ? text + " min" : text;
 }
 
 std::string place(const DebugEntry& entry) {
@@ -61,7 +61,7 @@ std::string instruction_text(const Program& program, std::size_t at) {
     const int i = static_cast<int>(n) % row.immediates;
     if (row.form == Form::Outline && i == 0) text += ' ';  // separates the groups
     text += is_integer_immediate(row, i) ? fmt::format(" {}", program.words[first + n])
-                                         : fmt::format(" {}", program.wide[first + n]);
+                                         : fmt::format(" {}", program.doubles[first + n]);
   }
   return text + shape_modes(program, row, word, at + 1);
 }

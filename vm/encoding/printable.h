@@ -12,6 +12,8 @@ namespace fathom::vm {
 // (Unicode's category Cc) or not UTF-8 (RFC 3629; overlong forms and surrogates are not UTF-8). `text` is not empty.
 std::size_t printable_length(std::string_view text);
 
+bool is_utf8(std::string_view text);
+
 // Replaces each byte that belongs to no printable character with U+FFFD. Line breaks stay.
 std::string printable(std::string_view text);
 

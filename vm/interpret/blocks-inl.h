@@ -35,7 +35,7 @@ HWY_INLINE void for_each_block(const Code& program, const PointsOf<S>& points, s
   for (std::size_t begin = 0; begin < count; begin += kBlockPoints) {
     const std::size_t size = std::min(kBlockPoints, count - begin);
     const std::size_t used = (size + kWidth - 1) / kWidth;
-    Machine<T> machine(program, workspace, used);
+    Interpreter<T> machine(program, workspace, used);
     auto* p = machine.first_point();
     for (std::size_t i = 0; i < used; ++i) {
       const std::size_t at = begin + i * kWidth;

@@ -25,7 +25,7 @@ namespace fathom::vm {
 // Computes distance[i] = f(points[i]) in float32 for i in [0, count).
 void evaluate_distance(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace);
 
-// Computes the same distances and each point's convexity radius `convex` (vm/number/convex-inl.h). Let L be the
+// Computes the same distances and each point's convexity radius `convex` (vm/number/convexity-inl.h). Let L be the
 // program's Lipschitz constant. At every x within convex / L of the point p, either f(x) >= convex - L |x - p|, or
 // max(f(x), 0) equals a convex function, the same for all such x. `convex` is at least |distance|, and infinite for a
 // solid that is convex as a whole.

@@ -26,7 +26,7 @@ namespace {
 
 template <class T, class P>
 T run_once(const Code& program, const Vec3<P>& point, Workspace& workspace) {
-  Machine<T> machine(program, workspace, 1);
+  Interpreter<T> machine(program, workspace, 1);
   *machine.first_point() = point;
   machine.interpret();
   return *machine.result();
@@ -51,7 +51,7 @@ SurfaceValue surface(const Code& program, glm::dvec3 p, Workspace& workspace) {
 
 SurfacePlace place(const Code& program, glm::dvec3 p, Workspace& workspace) {
   using T = Tagged<Real>;
-  Machine<T> machine(program, workspace, 1);
+  Interpreter<T> machine(program, workspace, 1);
   *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
   machine.interpret();
   const double tag = machine.result()->surface.v;

@@ -89,7 +89,7 @@ struct ValueTraits<Shared<kShares>> {
   }
 };
 
-// The min of a shape with kJoined.
+// The min of a shape with kFusedMin.
 template <Shares kShares>
 HWY_INLINE Shared<kShares> min(const Shared<kShares>& a, const Shared<kShares>& b) {
   return ValueTraits<Shared<kShares>>::template apply<MinOp>(a, b, nullptr);
@@ -108,7 +108,7 @@ namespace {
 
 template <Shares kShares>
 SurfaceShares shares(const Code& program, glm::dvec3 p, Workspace& workspace) {
-  Machine<Shared<kShares>> machine(program, workspace, 1);
+  Interpreter<Shared<kShares>> machine(program, workspace, 1);
   *machine.first_point() = Vec3<Real>{{p.x}, {p.y}, {p.z}};
   machine.interpret();
   SurfaceShares result = machine.result()->shares;

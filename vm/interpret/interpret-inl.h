@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "vm/interpret/meanings-inl.h"
+#include "vm/interpret/operator_traits-inl.h"
 #include "vm/interpret/workspace.h"
 #include "vm/program/opcode_rows.h"
 #include "vm/program/verify.h"
@@ -72,7 +72,7 @@ HWY_INLINE Batch immediate(const Code& program, std::size_t word, Batch*) {
 }
 template <class C>
 HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
-  return C::broadcast(program.wide[word]);
+  return C::broadcast(program.doubles[word]);
 }
 
 // Groups of immediates of an Outline instruction; the first is at `word`. Immediates are converted to constants on
@@ -80,8 +80,8 @@ HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
 template <class C, int kSize>
 class Outline {
  public:
-  Outline(const Code& program, std::size_t word, std::size_t count) : Outline(program.wide + word, count) {}
-  Outline(const double* wide, std::size_t count) : wide_(wide), count_(count) {}
+  Outline(const Code& program, std::size_t word, std::size_t count) : Outline(program.doubles + word, count) {}
+  Outline(const double* doubles, std::size_t count) : wide_(doubles), count_(count) {}
 
   std::size_t count() const { return count_; }
   // Returns immediate j of group i, unrounded. The immediate's f32 word is this value rounded to f32
@@ -96,11 +96,11 @@ class Outline {
 };
 
 // Source of float immediates: the program, with the same value for all lanes, or a table [immediate][lane], in which
-// each instruction's immediates begin at a multiple of four (vm/prune/skeleton.h).
+// each instruction's immediates begin at a multiple of four (vm/prune/template.h).
 enum class Immediate { Program, PerLane };
 
 template <class T, Immediate kFrom = Immediate::Program>
-class Machine {
+class Interpreter {
  public:
   using Traits = ValueTraits<T>;
   using P = typename Traits::Point;
@@ -111,7 +111,7 @@ class Machine {
   static constexpr std::size_t kSpares = 2;  // slots for operands that are neither on the stack nor in a local
 
   // `used`: number of numbers in use per slot. `table_bytes`: size of the table of immediates.
-  Machine(const Code& program, Workspace& workspace, std::size_t used, std::size_t table_bytes = 0)
+  Interpreter(const Code& program, Workspace& workspace, std::size_t used, std::size_t table_bytes = 0)
       : program_(program), used_(used) {
     const std::size_t point_bytes = program_.max_points * kBlock * sizeof(Place);
     const std::size_t value_slots = program_.max_values + program_.locals + kSpares;
@@ -240,13 +240,13 @@ class Machine {
   template <class Op, int Count>
   HWY_INLINE void apply_shape(Cursor& c) {
     const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
-    const bool moved = modes & kMoved, joined = modes & kJoined;
+    const bool moved = modes & kFusedTranslate, joined = modes & kFusedMin;
     const auto by = moved ? take<3>(c) : Immediates<3>{};
     const auto immediates = take<Count>(c);
     const Place* from = c.point;
     T* to = joined ? c.top : c.top += kBlock;
     if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
-      if (modes & kAnyShape) {
+      if (modes & kPolymorphic) {
         const T which = C::load(table_ + c.in_table * kLanes);
         const T value = any_shape(TranslateOp::apply(*from, by.k), immediates.k, which);
         *to = joined ? MinOp::apply(*to, value, immediates.k) : value;

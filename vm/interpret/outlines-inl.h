@@ -1,5 +1,5 @@
 // Definitions of the outlines' opcodes: signed distances in the xy plane, z ignored. The head of
-// vm/interpret/semantics-inl.h has the rules for all definitions.
+// vm/interpret/operators-inl.h has the rules for all definitions.
 //
 // All are exact and 1-Lipschitz outside, and also inside unless stated otherwise. Shapes with a mirror axis at x = 0
 // are folded onto x >= 0 first, because the nearest point of a symmetric boundary is on p's side. If p's nearest
@@ -15,7 +15,7 @@
 #define FATHOM_VM_OUTLINES_INL
 #endif
 
-#include "vm/interpret/semantics-inl.h"
+#include "vm/interpret/operators-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
 // Definitions of solids that are longer than a line: frames, arcs, polyhedra, periodic surfaces, fractals. The head
-// of vm/interpret/semantics-inl.h has the rules for all definitions.
+// of vm/interpret/operators-inl.h has the rules for all definitions.
 #if defined(FATHOM_VM_SOLIDS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_SOLIDS_INL
 #undef FATHOM_VM_SOLIDS_INL
@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-#include "vm/interpret/semantics-inl.h"
+#include "vm/interpret/operators-inl.h"
 #include "vm/number/interval-inl.h"
 #include "vm/number/number-inl.h"
 

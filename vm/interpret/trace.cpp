@@ -39,16 +39,16 @@ std::vector<Prefix> prefixes_of(const Code& program) {
 
 TraceStep step_after(Code program, const Prefix& prefix, glm::dvec3 p, Workspace& workspace) {
   program.size = prefix.size;
-  Machine<Batch> machine(program, workspace, 1);
+  Interpreter<Batch> machine(program, workspace, 1);
   *machine.first_point() = {Batch::broadcast(p.x), Batch::broadcast(p.y), Batch::broadcast(p.z)};
   machine.interpret();
   TraceStep step{prefix.offset, {}, {}};
   for (std::size_t i = 0; i < prefix.points; ++i) {
-    const auto& place = machine.first_point()[i * Machine<Batch>::kBlock];
+    const auto& place = machine.first_point()[i * Interpreter<Batch>::kBlock];
     step.points.emplace_back(first_lane(place.x), first_lane(place.y), first_lane(place.z));
   }
   for (std::size_t i = 0; i < prefix.values; ++i) {
-    step.values.push_back(first_lane(machine.result()[i * Machine<Batch>::kBlock]));
+    step.values.push_back(first_lane(machine.result()[i * Interpreter<Batch>::kBlock]));
   }
   return step;
 }

@@ -167,13 +167,13 @@ struct FloatLayout;
 template <>
 struct FloatLayout<float> {
   static constexpr int kMantissaBits = 23, kBias = 127, kSubnormalShift = 24;
-  static constexpr float kLeastNormal = 0x1p-126f, kShift = 0x1p24f;
+  static constexpr float kMinNormal = 0x1p-126f, kShift = 0x1p24f;
   static constexpr std::int32_t kRootHalf = 0x3f3504f3;  // sqrt 1/2
 };
 template <>
 struct FloatLayout<double> {
   static constexpr int kMantissaBits = 52, kBias = 1023, kSubnormalShift = 54;
-  static constexpr double kLeastNormal = 0x1p-1022, kShift = 0x1p54;
+  static constexpr double kMinNormal = 0x1p-1022, kShift = 0x1p54;
   static constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
 };
 
@@ -191,7 +191,7 @@ HWY_INLINE Scaled<BatchOf<S>> split_power_of_two(BatchOf<S> x) {
   using B = BatchOf<S>;
   const hn::ScalableTag<S> tag;
   const hn::RebindToSigned<hn::ScalableTag<S>> ints;
-  const auto subnormal = x < B::broadcast(Layout::kLeastNormal);
+  const auto subnormal = x < B::broadcast(Layout::kMinNormal);
   const B normal = select(subnormal, x * B::broadcast(Layout::kShift), x);
   const auto bits = hn::BitCast(ints, normal.v);
   const auto exponent = hn::ShiftRight<Layout::kMantissaBits>(hn::Sub(bits, hn::Set(ints, Layout::kRootHalf)));

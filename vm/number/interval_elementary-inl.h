@@ -126,8 +126,8 @@ inline Interval positive_power(Interval a, Interval y) {
   if (contains(y, 0)) lo = std::min(lo, 1.0), hi = std::max(hi, 1.0);
   if (std::isnan(lo) || std::isnan(hi)) return {0, std::numeric_limits<double>::infinity()};
   // The kernel's relative error grows with |y log x|, which is at most 750 between underflow and overflow.
-  const Interval wide = outward(lo * (1 - 1e-12), hi * (1 + 1e-12));
-  return {std::max(0.0, wide.lo), wide.hi};
+  const Interval doubles = outward(lo * (1 - 1e-12), hi * (1 + 1e-12));
+  return {std::max(0.0, doubles.lo), doubles.hi};
 }
 inline Interval pow(Interval x, Interval y) {
   const Real first = ceil(Real{y.lo}), last = floor(Real{y.hi});

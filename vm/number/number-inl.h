@@ -14,16 +14,16 @@
 //   a < b, a > b  -> a mask; any(mask); select(mask, yes, no)
 //
 // where either operand of + - * min max < > can be a constant. Convex and Tagged supply only the functions that
-// vm/interpret/semantics-inl.h applies to values. The types:
+// vm/interpret/operators-inl.h applies to values. The types:
 //
 //   Batch, RealBatch   f32 and double lanes, batch-inl.h
 //   Real               double, real-inl.h: the same bits as a lane of RealBatch
 //   Interval           range of the exact value over a box, interval-inl.h
 //   Along              ranges of value and derivative along a line, along-inl.h
 //   Slope              ranges of value and gradient, and float error, over a box, slope-inl.h
-//   Enclosure          range of the f32 results over a box per lane, enclosure-inl.h
+//   FloatInterval          range of the f32 results over a box per lane, float_interval-inl.h
 //   Dual<N>            value and partial derivatives over Batch or Real, dual-inl.h
-//   Convex<T>          value and convexity radius, convex-inl.h
+//   Convex<T>          value and convexity radius, convexity-inl.h
 //   Tagged<T>          value and the surface it belongs to, tagged-inl.h
 //   Recorded           no value: records the operations applied to it, recorded-inl.h
 //

@@ -75,7 +75,7 @@ std::uint32_t minimum_groups(Opcode opcode) { return has(info(opcode).facts, Fac
 
 int leading_immediates(std::uint32_t word) {
   const Form form = kTable[word & 0xff].form;
-  if (form == Form::Shape) return operand_of(word) & kMoved ? 3 : 0;
+  if (form == Form::Shape) return operand_of(word) & kFusedTranslate ? 3 : 0;
   if (form != Form::Unary && form != Form::Binary) return 0;
   const Sources sources = sources_of(word);
   return (sources.a == Source::Constant) + (sources.b == Source::Constant);
@@ -83,7 +83,7 @@ int leading_immediates(std::uint32_t word) {
 
 StackEffect effect_of(std::uint32_t word) {
   const OpcodeInfo& row = kTable[word & 0xff];
-  if (row.form == Form::Shape && (operand_of(word) & kJoined)) return {1, 0, 1, 0};
+  if (row.form == Form::Shape && (operand_of(word) & kFusedMin)) return {1, 0, 1, 0};
   if (row.form != Form::Unary && row.form != Form::Binary) return row.effect;
   const Sources sources = sources_of(word);
   const bool a = sources.a == Source::Stack, b = row.form == Form::Binary && sources.b == Source::Stack;
@@ -92,7 +92,7 @@ StackEffect effect_of(std::uint32_t word) {
 
 bool is_choice(std::uint32_t word) {
   const OpcodeInfo& row = kTable[word & 0xff];
-  return row.choice != Choice::None || (row.form == Form::Shape && (operand_of(word) & kJoined) != 0);
+  return row.choice != Choice::None || (row.form == Form::Shape && (operand_of(word) & kFusedMin) != 0);
 }
 
 std::size_t instruction_length(std::uint32_t word) {
@@ -103,8 +103,8 @@ std::size_t instruction_length(std::uint32_t word) {
 std::uint64_t instruction_cost(std::uint32_t word) {
   const OpcodeInfo& row = kTable[word & 0xff];
   const std::uint32_t modes = row.form == Form::Shape ? operand_of(word) : 0;
-  const int moved = modes & kMoved ? info(Opcode::Translate).cost : 0;
-  const int joined = modes & kJoined ? info(Opcode::Min).cost : 0;
+  const int moved = modes & kFusedTranslate ? info(Opcode::Translate).cost : 0;
+  const int joined = modes & kFusedMin ? info(Opcode::Min).cost : 0;
   return std::uint64_t{group_count(word)} * static_cast<std::uint64_t>(row.cost) +
          static_cast<std::uint64_t>(moved + joined);
 }
@@ -112,6 +112,7 @@ std::uint64_t instruction_cost(std::uint32_t word) {
 const OpcodeInfo* find_opcode(std::uint32_t byte) { return byte < kTable.size() ? &kTable[byte] : nullptr; }
 
 std::uint32_t largest_integer(const OpcodeInfo& opcode, int index) {
+  if (opcode.immediate_names.find(':') == opcode.immediate_names.npos) return 0;
   const std::string_view name = nth_name(opcode.immediate_names, index);
   const std::size_t colon = name.find(':');
   if (colon == name.npos) return 0;

@@ -43,7 +43,7 @@ enum class Fact : std::uint16_t {
   Ball = 1 << 4,
   Both = Formula | Ball,
   // Shape, Outline: features may be far from the origin even if the surface passes the origin, and the float error
-  // grows with the largest immediate. The node table gives these shapes a magnitude (compiler/graph/knowledge.h).
+  // grows with the largest immediate. The node table gives these shapes a cancellation (compiler/graph/node_facts.h).
   Far = 1 << 5,
   // Shape: the last immediate is a flag, not a size.
   LastIsFlag = 1 << 6,
@@ -88,12 +88,12 @@ constexpr int count_names(std::string_view names) {
   return count;
 }
 
-// Flags in a Shape's operand, which fuse a common sequence into one instruction (compiler/lower/fuse.h). kMoved:
-// three immediates x, y, z precede the row's own, and the shape is translated there. kJoined: the result is the min
+// Flags in a Shape's operand, which fuse a common sequence into one instruction (compiler/lower/fuse.h). kFusedTranslate:
+// three immediates x, y, z precede the row's own, and the shape is translated there. kFusedMin: the result is the min
 // of the shape and the top value, and replaces the top value.
-inline constexpr std::uint32_t kMoved = 1, kJoined = 2;
-// Flag of a skeleton's RoundBox only (vm/prune/skeleton.h): each lane evaluates a shape of its own.
-inline constexpr std::uint32_t kAnyShape = 4;
+inline constexpr std::uint32_t kFusedTranslate = 1, kFusedMin = 2;
+// Flag of a template's RoundBox only (vm/prune/template.h): each lane evaluates a shape of its own.
+inline constexpr std::uint32_t kPolymorphic = 4;
 // Source of a Unary's or Binary's operand: the stack, a coordinate of the top point, an immediate before the row's
 // own, or a local. A Ternary's operands lie on the stack.
 enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };
@@ -112,7 +112,7 @@ struct OpcodeInfo {
   Choice choice;
   int cost;  // multiply-adds per point, in an Outline per group
   Fact facts;
-  StackEffect effect;  // of the instruction without kMoved, kJoined or Sources
+  StackEffect effect;  // of the instruction without kFusedTranslate, kFusedMin or Sources
   bool has_operand;    // true if the opcode word's high 24 bits are a number
 };
 
@@ -122,10 +122,10 @@ const OpcodeInfo& info(Opcode opcode);
 std::uint32_t group_count(std::uint32_t word);
 // Returns the minimum number of groups of an Outline row, 1 for any other row.
 std::uint32_t minimum_groups(Opcode opcode);
-// Returns the number of immediates before the row's own: 3 for a Shape with kMoved, 1 per Source::Constant.
+// Returns the number of immediates before the row's own: 3 for a Shape with kFusedTranslate, 1 per Source::Constant.
 int leading_immediates(std::uint32_t word);
 StackEffect effect_of(std::uint32_t word);
-// True if the result can be exactly one of two operands: a row with a choice, or a Shape with kJoined.
+// True if the result can be exactly one of two operands: a row with a choice, or a Shape with kFusedMin.
 bool is_choice(std::uint32_t word);
 // Length of an instruction in words, including the opcode word, and its cost in multiply-adds per point. The low byte
 // of `word` must name an opcode.

@@ -39,7 +39,7 @@ inline const OpcodeRow& row_of(std::uint32_t word) { return kOpcodeRows[word & 0
 
 inline bool is_function(Form form) { return form == Form::Unary || form == Form::Binary; }
 inline bool is_joined(std::uint32_t word) {
-  return row_of(word).form == Form::Shape && (operand_of(word) & kJoined) != 0;
+  return row_of(word).form == Form::Shape && (operand_of(word) & kFusedMin) != 0;
 }
 
 // Returns the number of words of an instruction after its opcode word.
@@ -50,7 +50,7 @@ inline std::uint32_t immediates_of(std::uint32_t word) {
     const Sources sources = sources_of(word);
     return own + (sources.a == Source::Constant) + (sources.b == Source::Constant);
   }
-  if (row.form == Form::Shape) return own + (operand_of(word) & kMoved ? 3 : 0);
+  if (row.form == Form::Shape) return own + (operand_of(word) & kFusedTranslate ? 3 : 0);
   return row.form == Form::Outline ? own * operand_of(word) : own;
 }
 

@@ -20,14 +20,14 @@ void Program::append(Opcode opcode, std::uint32_t operand, const std::vector<dou
   CHECK(1 + immediates.size() == instruction_length(word), "an instruction has the immediates its row names");
   entry.offset = static_cast<std::uint32_t>(words.size());
   words.push_back(word);
-  wide.push_back(0.0);
+  doubles.push_back(0.0);
   const auto leading = static_cast<std::size_t>(leading_immediates(word));
   for (std::size_t i = 0; i < immediates.size(); ++i) {
     const double value = immediates[i] + 0.0;  // -0 becomes 0
     const bool integer = i >= leading && is_integer_immediate(row, static_cast<int>((i - leading) % group));
     words.push_back(integer ? static_cast<std::uint32_t>(value)
                             : std::bit_cast<std::uint32_t>(static_cast<float>(value)));
-    wide.push_back(integer ? 0.0 : value);
+    doubles.push_back(integer ? 0.0 : value);
   }
   debug.push_back(std::move(entry));
 }

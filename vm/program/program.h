@@ -8,7 +8,7 @@
 //     sphere 0.5          ; p p'   -> value |p'| - 0.5
 //     drop                ; p p'   -> p
 //
-// The flags kMoved and kJoined (vm/program/opcode.h) fuse these three instructions into one, and also a min that
+// The flags kFusedTranslate and kFusedMin (vm/program/opcode.h) fuse these three instructions into one, and also a min that
 // follows:
 //
 //     sphere 0.5 at 0 1 0
@@ -42,7 +42,7 @@ struct DebugEntry {
 
 struct Program {
   std::vector<std::uint32_t> words;
-  std::vector<double> wide;  // [word] the immediate in double; 0 at opcode words and integers
+  std::vector<double> doubles;  // [word] the immediate in double; 0 at opcode words and integers
   std::uint32_t locals = 0;  // number of locals
   std::string source_name;   // name of the text that the debug entries refer to
   std::vector<DebugEntry> debug;

@@ -32,13 +32,13 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
       if (bits == 0 || bits > largest) {
         return fmt::format("{}: {} is {}, not in 1..{}", row.mnemonic, name, bits, largest);
       }
-    } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.wide[word])) {
+    } else if (!std::isfinite(std::bit_cast<float>(bits)) || !std::isfinite(program.doubles[word])) {
       return fmt::format("{}: {} is not finite", row.mnemonic, name);
-    } else if (program.wide[word] == 0 && std::signbit(program.wide[word])) {
+    } else if (program.doubles[word] == 0 && std::signbit(program.doubles[word])) {
       return fmt::format("{}: {} is -0, which is written 0", row.mnemonic, name);
-    } else if (std::bit_cast<std::uint32_t>(static_cast<float>(program.wide[word])) != bits) {
+    } else if (std::bit_cast<std::uint32_t>(static_cast<float>(program.doubles[word])) != bits) {
       return fmt::format("{}: {} is {} in the code but {} in the wide table", row.mnemonic, name,
-                         std::bit_cast<float>(bits), program.wide[word]);
+                         std::bit_cast<float>(bits), program.doubles[word]);
     }
   }
   return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<std::string> check_sources(const OpcodeInfo& row, std::uint32_t wo
 std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
   const std::uint32_t operand = operand_of(word);
   if (row.form == Form::Unary || row.form == Form::Binary) return check_sources(row, word, state);
-  const std::uint32_t most = row.has_operand ? kMaxOperand : row.form == Form::Shape ? kMoved | kJoined : 0;
+  const std::uint32_t most = row.has_operand ? kMaxOperand : row.form == Form::Shape ? kFusedTranslate | kFusedMin : 0;
   if (operand > most) return fmt::format("{} has no operand {}", row.mnemonic, operand);
   if (row.opcode == Opcode::Tee || row.opcode == Opcode::Load) return check_local(row, operand, state);
   return std::nullopt;
@@ -99,7 +99,7 @@ std::variant<VerifiedProgram, VerifyError> verify(Program program, const Limits&
   VerifiedProgram result;
   const std::size_t size = program.words.size();
   if (size > limits.words) return VerifyError{0, fmt::format("{} words; at most {} are allowed", size, limits.words)};
-  if (program.wide.size() != size) return VerifyError{0, "the table of wide constants is not as long as the code"};
+  if (program.doubles.size() != size) return VerifyError{0, "the table of wide constants is not as long as the code"};
   if (program.locals > limits.locals) {
     return VerifyError{0, fmt::format("{} locals; at most {} are allowed", program.locals, limits.locals)};
   }

@@ -38,7 +38,7 @@ struct VerifyError {
 // owner of the words, a VerifiedProgram or a Part that vm/prune/specialise.h made from one.
 struct Code {
   const std::uint32_t* words;
-  const double* wide;  // [word]
+  const double* doubles;  // [word]
   std::size_t size;    // words
   std::uint32_t locals, max_values, max_points, choices;
 };
@@ -47,7 +47,7 @@ struct Code {
 class VerifiedProgram {
  public:
   operator Code() const {
-    return {program_.words.data(), program_.wide.data(), program_.words.size(), program_.locals,
+    return {program_.words.data(), program_.doubles.data(), program_.words.size(), program_.locals,
             max_values_,           max_points_,           choices_};
   }
   const Program& program() const { return program_; }

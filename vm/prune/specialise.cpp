@@ -27,101 +27,101 @@ ChoiceLink link_of(const Code& code, std::uint32_t at) {
 
 }  // namespace
 
-bool Specialiser::look(const Part& program, const Boxes& boxes, Workspace& workspace) {
+bool Specialiser::enclose_choices(const PrunedProgram& program, const Boxes& boxes, Workspace& workspace) {
   program_ = &program;
-  pairwise_ = false;
+  independent_ = false;
   if (!read()) return false;
   enclose(program, boxes, lo_.data(), hi_.data(), bounds_, workspace);
   return true;
 }
 
-SlopeBound Specialiser::look(const Part& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+SlopeBound Specialiser::enclose_choices(const PrunedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
   program_ = &program;
-  pairwise_ = true;
-  is_read_ = false;  // decide() calls read(), because most callers want only the bound
+  independent_ = true;
+  is_read_ = false;  // resolve() calls read(), because most callers want only the bound
   return enclose_slope(program, lo, hi, ranges_, workspace);
 }
 
 bool Specialiser::read() {
-  is_read_ = expression_.read(*program_);
+  is_read_ = graph_.read(*program_);
   if (!is_read_) return false;
-  links_.clear(), hands_on_.clear();
-  if (pairwise_) {
+  links_.clear(), forwards_operand_.clear();
+  if (independent_) {
     link_pairs();
   } else {
     link_choices();
   }
-  const std::vector<std::uint32_t>& tees = expression_.tees();
-  if (!tees.empty()) number_.resize(expression_.nodes().size());
+  const std::vector<std::uint32_t>& tees = graph_.tees();
+  if (!tees.empty()) number_.resize(graph_.nodes().size());
   for (std::uint32_t i = 0; i < tees.size(); ++i) number_[tees[i]] = i;
   return true;
 }
 
 void Specialiser::link_pairs() {
-  for (const std::uint32_t id : expression_.choices()) link_choice(id);
+  for (const std::uint32_t id : graph_.choices()) link_choice(id);
 }
 
 // Adds the link of the choice at node `id`, without the choices of its operands.
 ChoiceLink& Specialiser::link_choice(std::uint32_t id) {
-  const std::uint32_t at = expression_.nodes()[id].at, word = program_->words[at];
+  const std::uint32_t at = graph_.nodes()[id].at, word = program_->words[at];
   const Sources sources = is_joined(word) ? Sources{Source::Stack, Source::Local} : sources_of(word);
   ChoiceLink& link = links_.emplace_back(link_of(*program_, at));
-  hands_on_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});
+  forwards_operand_.push_back({sources.a == Source::Stack, sources.b == Source::Stack && !link.opposite});
   return link;
 }
 
 void Specialiser::link_choices() {
-  const auto& nodes = expression_.nodes();
-  under_.assign(nodes.size(), {kNone, 0});
+  const auto& nodes = graph_.nodes();
+  producer_choice_.assign(nodes.size(), {kNone, 0});
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-    const ExpressionNode& node = nodes[i];
+    const DefUseNode& node = nodes[i];
     const std::uint32_t word = program_->words[node.at];
     const OpcodeRow& row = row_of(word);
     if (node.choice != kNone) {
       ChoiceLink& link = link_choice(i);
-      if (node.a != kNone) link.a = under_[node.a];
-      if (node.b != kNone) link.b = under_[node.b];
-      under_[i] = {node.choice, 0};
+      if (node.a != kNone) link.a = producer_choice_[node.a];
+      if (node.b != kNone) link.b = producer_choice_[node.b];
+      producer_choice_[i] = {node.choice, 0};
     } else if (row.form == Form::Machine) {
-      under_[i] = under_[node.a];
+      producer_choice_[i] = producer_choice_[node.a];
     } else if (row.opcode == Opcode::Offset && operand_of(word) == 0) {
-      under_[i] = under_[node.a];
-      under_[i].less += std::bit_cast<float>(program_->words[node.at + 1]);
+      producer_choice_[i] = producer_choice_[node.a];
+      producer_choice_[i].less += std::bit_cast<float>(program_->words[node.at + 1]);
     } else {
       for (const std::uint32_t operand : {node.a, node.b, node.c}) {
-        if (operand != kNone && under_[operand].choice != kNone) links_[under_[operand].choice].always = true;
+        if (operand != kNone && producer_choice_[operand].choice != kNone) links_[producer_choice_[operand].choice].always = true;
       }
     }
   }
 }
 
-void Specialiser::decide(float least, float most, float error) {
+void Specialiser::resolve(float least, float most, float error) {
   CHECK(is_read_ || read(), "what is to be cut is an expression");
-  kept_.resize(links_.size());
+  live_.resize(links_.size());
   is_counted_ = false;
-  if (pairwise_) return settle_pairs(links_.data(), ranges_.data(), links_.size(), kept_.data());
-  interest_.resize(links_.size());
-  settle_choices(links_.data(), bounds_.data(), links_.size(), under_[expression_.root()], least, most, error,
-                 interest_.data(), kept_.data());
+  if (independent_) return resolve_pairs(links_.data(), ranges_.data(), links_.size(), live_.data());
+  demanded_.resize(links_.size());
+  resolve_choices(links_.data(), bounds_.data(), links_.size(), producer_choice_[graph_.root()], least, most, error,
+                 demanded_.data(), live_.data());
 }
 
 std::uint32_t Specialiser::choices_left(std::size_t box) const {
   std::uint32_t left = 0;
-  for (const KeptOperands kept : kept_) left += (kept.a & kept.b) >> box & 1;
+  for (const LiveOperands live : live_) left += (live.a & live.b) >> box & 1;
   return left;
 }
 
-void Specialiser::part(std::size_t box, Part& out) {
+void Specialiser::prune(std::size_t box, PrunedProgram& out) {
   box_ = static_cast<std::uint32_t>(box);
   locals_ = 0;
-  if (!expression_.tees().empty()) begin_locals();
+  if (!graph_.tees().empty()) begin_locals();
   writer_.begin(*program_);
   waiting_ = 0;
-  push(expression_.root(), Task::Value);
+  push(graph_.root(), Task::Value);
   while (waiting_ > 0) {
     const Task task = tasks_[--waiting_];
     if (task.what == Task::Value) {
-      emit(resolve(task.node));
+      emit(forward_of(task.node));
     } else if (task.what == Task::Local) {
       define_local(task.node);
     } else {
@@ -132,13 +132,13 @@ void Specialiser::part(std::size_t box, Part& out) {
 }
 
 // Follows choices that return a kept operand unchanged. Returns the first node from `id` on that computes something.
-std::uint32_t Specialiser::resolve(std::uint32_t id) const {
+std::uint32_t Specialiser::forward_of(std::uint32_t id) const {
   while (true) {
-    const ExpressionNode& node = expression_.nodes()[id];
+    const DefUseNode& node = graph_.nodes()[id];
     if (node.choice == kNone) return id;
     const bool a = keeps_a(node.choice), b = keeps_b(node.choice);
-    const HandsOn hands_on = hands_on_[node.choice];
-    if ((a && b) || !(a ? hands_on.a : hands_on.b)) return id;
+    const ForwardsOperand forwards_operand = forwards_operand_[node.choice];
+    if ((a && b) || !(a ? forwards_operand.a : forwards_operand.b)) return id;
     id = a ? node.a : node.b;
   }
 }
@@ -146,19 +146,19 @@ std::uint32_t Specialiser::resolve(std::uint32_t id) const {
 // Counts the uses of each local per box. The first use in the order of the code becomes the local's definition. Users
 // come after what they use, so one pass from the last node to the first sees all uses of a node before that node.
 void Specialiser::count_uses() {
-  const auto& nodes = expression_.nodes();
+  const auto& nodes = graph_.nodes();
   needed_.assign(nodes.size(), 0);
-  uses_.assign(expression_.tees().size(), {});
-  need(expression_.root(), pairwise_ ? 1 : 0xffff);
-  for (std::uint32_t id = expression_.root() + 1; id-- > 0;) {
-    const ExpressionNode& node = nodes[id];
+  uses_.assign(graph_.tees().size(), {});
+  need(graph_.root(), independent_ ? 1 : 0xffff);
+  for (std::uint32_t id = graph_.root() + 1; id-- > 0;) {
+    const DefUseNode& node = nodes[id];
     const std::uint32_t word = program_->words[node.at];
     const OpcodeRow& row = row_of(word);
     std::uint32_t boxes = needed_[id];
     if (row.opcode == Opcode::Tee) boxes |= uses_[number_[id]].boxes;
     if (boxes == 0) continue;
-    const std::uint32_t a = node.choice == kNone ? boxes : boxes & kept_[node.choice].a;
-    const std::uint32_t b = node.choice == kNone ? boxes : boxes & kept_[node.choice].b;
+    const std::uint32_t a = node.choice == kNone ? boxes : boxes & live_[node.choice].a;
+    const std::uint32_t b = node.choice == kNone ? boxes : boxes & live_[node.choice].b;
     if (is_function(row.form)) {
       const Sources sources = sources_of(word);
       need_operand(sources.a, node.a, a);
@@ -177,7 +177,7 @@ void Specialiser::count_uses() {
 // Marks the value of `node` as needed at its place on the stack.
 void Specialiser::need(std::uint32_t node, std::uint32_t boxes) {
   needed_[node] = static_cast<std::uint16_t>(needed_[node] | boxes);
-  const bool tee = row_of(program_->words[expression_.nodes()[node].at]).opcode == Opcode::Tee;
+  const bool tee = row_of(program_->words[graph_.nodes()[node].at]).opcode == Opcode::Tee;
   if (tee) count_use(uses_[number_[node]], boxes);
 }
 
@@ -200,14 +200,14 @@ void Specialiser::begin_locals() {
 }
 
 void Specialiser::emit(std::uint32_t id) {
-  const ExpressionNode& node = expression_.nodes()[id];
+  const DefUseNode& node = graph_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
   const OpcodeRow& row = row_of(word);
   if (is_function(row.form)) return emit_operator(id, node, word, row);
   if (row.opcode == Opcode::Load) return use_local(node.a);
   if (row.opcode == Opcode::Tee) return use_local(id);
   if (is_joined(word) && !keeps_a(node.choice)) {
-    return writer_.put(id, word & ~(kJoined << 8), node.at + 1, immediates_of(word));
+    return writer_.put(id, word & ~(kFusedMin << 8), node.at + 1, immediates_of(word));
   }
   emit_whole(id);
   if (row.opcode == Opcode::Drop) push(node.point, Task::Instruction);
@@ -218,12 +218,12 @@ void Specialiser::emit(std::uint32_t id) {
 }
 
 void Specialiser::emit_whole(std::uint32_t id) {
-  const std::uint32_t at = expression_.nodes()[id].at, word = program_->words[at];
+  const std::uint32_t at = graph_.nodes()[id].at, word = program_->words[at];
   writer_.put(id, word, at + 1, immediates_of(word));
 }
 
 // Emits a Unary or Binary, or the remaining operand of a choice, if that is not on the stack or changes its sign.
-void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, std::uint32_t word,
+void Specialiser::emit_operator(std::uint32_t id, const DefUseNode& node, std::uint32_t word,
                                 const OpcodeRow& row) {
   if (node.choice != kNone) {
     const bool has_a = keeps_a(node.choice);
@@ -244,7 +244,7 @@ void Specialiser::emit_operator(std::uint32_t id, const ExpressionNode& node, st
 
 // Emits the remaining operand of a choice, `a` if `first`, else b.
 void Specialiser::emit_lone(std::uint32_t id, bool first) {
-  const ExpressionNode& node = expression_.nodes()[id];
+  const DefUseNode& node = graph_.nodes()[id];
   const std::uint32_t word = program_->words[node.at];
   const Sources sources = sources_of(word);
   const Source source = first ? sources.a : sources.b;
@@ -292,7 +292,7 @@ void Specialiser::use_local(std::uint32_t tee) {
 void Specialiser::define_local(std::uint32_t tee) {
   Local& local = local_[number_[tee]];
   if (local.shared) writer_.put(tee, opcode_word(Opcode::Tee, number_of(local)), 0, 0);
-  push(expression_.nodes()[tee].a, Task::Value);
+  push(graph_.nodes()[tee].a, Task::Value);
 }
 
 std::uint32_t Specialiser::number_of(Local& local) {

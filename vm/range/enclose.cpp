@@ -20,19 +20,19 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 // Returns a coordinate's range. Points are finite, so infinite bounds are clamped to the largest float.
-HWY_INLINE Enclosure coordinate(const Boxes& boxes, std::size_t axis, std::size_t at) {
+HWY_INLINE FloatInterval coordinate(const Boxes& boxes, std::size_t axis, std::size_t at) {
   return {max(-largest(), Batch::load(boxes.lo[axis] + at)), min(largest(), Batch::load(boxes.hi[axis] + at))};
 }
 
 void enclose_boxes(const Code& program, const Boxes& boxes, float* lo, float* hi, ChoiceBounds* choices,
                    Workspace& workspace) {
-  constexpr std::size_t kSize = kSlot<Enclosure>;
-  Machine<Enclosure> machine(program, workspace, kSize);
+  constexpr std::size_t kSize = kSlot<FloatInterval>;
+  Interpreter<FloatInterval> machine(program, workspace, kSize);
   machine.observer().bounds = choices;
   for (std::size_t i = 0; i < kSize; ++i) {
     const std::size_t at = i * kLanes;
     machine.first_point()[i] =
-        PointTraits<Enclosure>::place({coordinate(boxes, 0, at), coordinate(boxes, 1, at), coordinate(boxes, 2, at)});
+        PointTraits<FloatInterval>::place({coordinate(boxes, 0, at), coordinate(boxes, 1, at), coordinate(boxes, 2, at)});
   }
   machine.interpret();
   for (std::size_t i = 0; i < kSize; ++i) {

@@ -1,4 +1,4 @@
-// The interpreter over boxes, Machine<Enclosure>: opcode functions with a separate form for Enclosure, the entries of
+// The interpreter over boxes, Machine<FloatInterval>: opcode functions with a separate form for FloatInterval, the entries of
 // the point stack, and the observer of choices.
 #if defined(FATHOM_VM_ENCLOSED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ENCLOSED_INL
@@ -8,7 +8,7 @@
 #endif
 
 #include "vm/interpret/interpret-inl.h"
-#include "vm/number/enclosure_elementary-inl.h"
+#include "vm/number/float_interval_elementary-inl.h"
 #include "vm/program/opcode_rows.h"
 #include "vm/range/choice_bounds.h"
 
@@ -20,7 +20,7 @@ namespace fathom::vm::HWY_NAMESPACE {
 inline constexpr float kBallReach = 1e12f;
 
 // A range of several cells gives all of 0..288, widened by one for float errors. Beyond 2^20 the result is unknown.
-HWY_INLINE Enclosure permute(const Enclosure& n) {
+HWY_INLINE FloatInterval permute(const FloatInterval& n) {
   const Batch one_cell = permute(n.lo);
   const BatchMask known = magnitude(sizes(n)) < Batch::broadcast(0x1p20f), one = n.lo == n.hi;
   return whole_where(
@@ -31,21 +31,21 @@ HWY_INLINE Enclosure permute(const Enclosure& n) {
 // most 1, so the operands' ends give the range; the generic formula would use each operand several times. Rounding
 // errs by less than 2^-22 of result and width, twice.
 template <class Blend>
-HWY_INLINE Enclosure blend(const Enclosure& a, const Enclosure& b, Batch k, const Blend& at) {
+HWY_INLINE FloatInterval blend(const FloatInterval& a, const FloatInterval& b, Batch k, const Blend& at) {
   const auto slack = [&](Batch end) HWY_ATTR { return (abs(end) + k) * Batch::broadcast(0x1p-21f); };
   const Batch lo = at(a.lo, b.lo), hi = at(a.hi, b.hi);
   return whole_where(!(is_bounded(a) & is_bounded(b)), without_nan(lo - slack(lo), hi + slack(hi)));
 }
-HWY_INLINE Enclosure smooth_min(const Enclosure& a, const Enclosure& b, Batch k, Batch inv4k) {
+HWY_INLINE FloatInterval smooth_min(const FloatInterval& a, const FloatInterval& b, Batch k, Batch inv4k) {
   return blend(a, b, k, [&](Batch x, Batch y) HWY_ATTR { return smooth_min(x, y, k, inv4k); });
 }
-HWY_INLINE Enclosure smooth_max(const Enclosure& a, const Enclosure& b, Batch k, Batch inv4k) {
+HWY_INLINE FloatInterval smooth_max(const FloatInterval& a, const FloatInterval& b, Batch k, Batch inv4k) {
   return blend(a, b, k, [&](Batch x, Batch y) HWY_ATTR { return smooth_max(x, y, k, inv4k); });
 }
 
 // As for Interval: the values at the nearest and the farthest corner, each with its rounding error.
-HWY_INLINE Enclosure ellipse(const Vec3<Enclosure>& p, const Batch* k) {
-  const Enclosure x = abs(p.x), y = abs(p.y);
+HWY_INLINE FloatInterval ellipse(const Vec3<FloatInterval>& p, const Batch* k) {
+  const FloatInterval x = abs(p.x), y = abs(p.y);
   const Batch reach = max(Batch::broadcast(1.0f), x.hi + y.hi + k[0]);
   const Batch slack = reach * Batch::broadcast(4 * kFloatError);
   const Batch lo = ellipse(Vec3<Batch>{x.lo, y.lo, x.lo}, k), hi = ellipse(Vec3<Batch>{x.hi, y.hi, x.hi}, k);
@@ -60,10 +60,10 @@ struct Ball {
 HWY_INLINE Batch taxicab(const Vec3<Batch>& p) { return abs(p.x) + abs(p.y) + abs(p.z); }
 // Returns the smallest ball around a box. The radius is NaN or infinite for an unbounded box, and never so small that
 // squares which vanish in float could matter.
-HWY_INLINE Ball ball_around(const Vec3<Enclosure>& box) {
+HWY_INLINE Ball ball_around(const Vec3<FloatInterval>& box) {
   const Batch half = Batch::broadcast(0.5f);
-  const auto middle = [&](const Enclosure& a) HWY_ATTR { return a.lo * half + a.hi * half; };
-  const auto reach = [](const Enclosure& a, Batch from) HWY_ATTR { return max(a.hi - from, from - a.lo); };
+  const auto middle = [&](const FloatInterval& a) HWY_ATTR { return a.lo * half + a.hi * half; };
+  const auto reach = [](const FloatInterval& a, Batch from) HWY_ATTR { return max(a.hi - from, from - a.lo); };
   const Vec3<Batch> c{middle(box.x), middle(box.y), middle(box.z)};
   const Batch diagonal = length(reach(box.x, c.x), reach(box.y, c.y), reach(box.z, c.z));
   return {c, diagonal * Batch::broadcast(1 + 0x1p-20f) + Batch::broadcast(0x1p-59f)};
@@ -77,7 +77,7 @@ HWY_INLINE Ball smaller(const Ball& a, const Ball& b) {
 
 // Range of noise: the value in the middle of the box, plus or minus the maximum change within the box and the
 // rounding errors of both values.
-HWY_INLINE Enclosure noise(const Enclosure& x, const Enclosure& y, const Enclosure& z) {
+HWY_INLINE FloatInterval noise(const FloatInterval& x, const FloatInterval& y, const FloatInterval& z) {
   const Ball ball = ball_around({x, y, z});
   const Batch error = Batch::broadcast(0x1p-18), most = Batch::broadcast(kNoiseRange) + error;
   static_assert(2 * kNoiseUnits * 0x1p-24 < 0x1p-18 - 0x1p-20);  // 2^-20 is for the rounding errors here
@@ -91,10 +91,10 @@ HWY_INLINE Enclosure noise(const Enclosure& x, const Enclosure& y, const Enclosu
 // Bounds of an affine map M. most: bound on the largest singular value, the root of the largest row sum of |M^T M|
 // (Gershgorin), which is 1 for a rotation. terms: bound on the size of the products of a row, the root of the sum of
 // squares of M.
-struct Stretch {
+struct OperatorNorm {
   double most, terms;
 };
-HWY_INLINE Stretch stretch_of(const Batch* k) {
+HWY_INLINE OperatorNorm operator_norm(const Batch* k) {
   double m[12];
   for (int i = 0; i < 12; ++i) m[i] = hn::GetLane(k[i].v);
   double most = 0, trace = 0;
@@ -110,7 +110,7 @@ HWY_INLINE Stretch stretch_of(const Batch* k) {
 // Returns the range of a 1-Lipschitz shape over the ball about `centre`, from its value there. Rounding errs, at the
 // centre and at the point, by the bound of vm/program/opcodes.def, where `size` is the size of features far from the
 // origin, and by 2^-24 of the point for a moved shape. Together these are 22 units of 2^-24; 32 are used.
-HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value, Batch size, BatchMask& known) {
+HWY_INLINE FloatInterval around(const Vec3<Batch>& centre, Batch radius, Batch value, Batch size, BatchMask& known) {
   const Batch reach = max(Batch::broadcast(1.0f), max(taxicab(centre), abs(value))) + (size + radius);
   const Batch slack = radius + reach * Batch::broadcast(0x1p-19f);
   known = reach < Batch::broadcast(kBallReach);
@@ -119,15 +119,15 @@ HWY_INLINE Enclosure around(const Vec3<Batch>& centre, Batch radius, Batch value
 
 // An entry of the point stack is a box and a ball, both of which contain the point.
 template <>
-struct PointTraits<Enclosure> {
-  struct Place : Vec3<Enclosure> {
+struct PointTraits<FloatInterval> {
+  struct Place : Vec3<FloatInterval> {
     Ball ball;
   };
-  static HWY_INLINE Place place(const Vec3<Enclosure>& box) { return {box, ball_around(box)}; }
+  static HWY_INLINE Place place(const Vec3<FloatInterval>& box) { return {box, ball_around(box)}; }
 
   template <class Op>
   static HWY_INLINE Place map(const Place& p, const Batch* k) {
-    const Vec3<Enclosure> box = Op::apply(p, k);
+    const Vec3<FloatInterval> box = Op::apply(p, k);
     if constexpr (Op::kOpcode == Opcode::Translate) {
       return {box, image<Op>(p.ball, k)};
     } else if constexpr (has(Op::kOpcode, Fact::Affine) || !has(Op::kOpcode, Fact::Expansive)) {
@@ -138,7 +138,7 @@ struct PointTraits<Enclosure> {
   }
 
   template <class Op, int Count>
-  static HWY_INLINE Enclosure shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
+  static HWY_INLINE FloatInterval shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
     if constexpr (!has(Op::kOpcode, Fact::Ball)) {
       return formula<Op>(p, by, k, w);
     } else {
@@ -150,29 +150,29 @@ struct PointTraits<Enclosure> {
       }
       const Vec3<Batch> centre = TranslateOp::apply(p.ball.centre, by);
       BatchMask known;
-      const Enclosure value = around(centre, p.ball.radius, Op::apply(centre, k, w), size, known);
+      const FloatInterval value = around(centre, p.ball.radius, Op::apply(centre, k, w), size, known);
       if constexpr (has(Op::kOpcode, Fact::Formula)) {
-        const Enclosure range = formula<Op>(p, by, k, w);
-        return select(known, Enclosure{max(value.lo, range.lo), min(value.hi, range.hi)}, range);
+        const FloatInterval range = formula<Op>(p, by, k, w);
+        return select(known, FloatInterval{max(value.lo, range.lo), min(value.hi, range.hi)}, range);
       }
       if (!any(!known)) return value;
       return select(known, value, formula_apart<Op>(p, by, k, w));
     }
   }
   template <class Op>
-  static HWY_INLINE Enclosure formula(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
+  static HWY_INLINE FloatInterval formula(const Vec3<FloatInterval>& box, const Batch* by, const Batch* k,
                                       const std::uint32_t* w) {
     return Op::apply(TranslateOp::apply(box, by), k, w);
   }
   // formula() as a function of its own, for the few boxes that are unbounded or beyond kBallReach.
   template <class Op>
-  static HWY_NOINLINE Enclosure formula_apart(const Vec3<Enclosure>& box, const Batch* by, const Batch* k,
+  static HWY_NOINLINE FloatInterval formula_apart(const Vec3<FloatInterval>& box, const Batch* by, const Batch* k,
                                               const std::uint32_t* w) {
     return formula<Op>(box, by, k, w);
   }
 
   template <class Op, class Groups>
-  static HWY_INLINE Enclosure outline(const Place& p, const Groups& groups) {
+  static HWY_INLINE FloatInterval outline(const Place& p, const Groups& groups) {
     static_assert(has(Op::kOpcode, Fact::Ball) && has(Op::kOpcode, Fact::Far) && !has(Op::kOpcode, Fact::Expansive));
     double size = 0;
     for (std::size_t i = 0; i < groups.count(); ++i) {
@@ -180,7 +180,7 @@ struct PointTraits<Enclosure> {
     }
     BatchMask known;
     const Batch middle = Op::apply(p.ball.centre, groups);
-    const Enclosure value = around(p.ball.centre, p.ball.radius, middle, Batch::broadcast(size), known);
+    const FloatInterval value = around(p.ball.centre, p.ball.radius, middle, Batch::broadcast(size), known);
     return whole_where(!known, value);
   }
 
@@ -190,8 +190,8 @@ struct PointTraits<Enclosure> {
   template <class Op>
   static HWY_INLINE Ball image(const Ball& ball, const Batch* k) {
     constexpr bool kTranslate = Op::kOpcode == Opcode::Translate;
-    Stretch stretch{1, kTranslate ? 0 : 1};
-    if constexpr (Op::kOpcode == Opcode::Affine) stretch = stretch_of(k);
+    OperatorNorm stretch{1, kTranslate ? 0 : 1};
+    if constexpr (Op::kOpcode == Opcode::Affine) stretch = operator_norm(k);
     const Vec3<Batch> centre = Op::apply(ball.centre, k);
     const Batch radius = ball.radius * Batch::broadcast(stretch.most * (1 + 0x1p-20));
     const Batch terms = (taxicab(ball.centre) + ball.radius) * Batch::broadcast(stretch.terms * (1 + 0x1p-20));
@@ -202,15 +202,15 @@ struct PointTraits<Enclosure> {
 
 // One slot holds all boxes of a call of enclose().
 template <>
-inline constexpr std::size_t kSlot<Enclosure> = kEnclosedBoxes / kLanes;
+inline constexpr std::size_t kSlot<FloatInterval> = kEnclosedBoxes / kLanes;
 template <>
-inline constexpr bool kAlwaysFull<Enclosure> = true;
+inline constexpr bool kAlwaysFull<FloatInterval> = true;
 
 template <>
-struct ChoiceObserver<Enclosure> {
+struct ChoiceObserver<FloatInterval> {
   ChoiceBounds* bounds = nullptr;
 
-  HWY_INLINE void see(std::size_t i, const Enclosure& a, const Enclosure& b) {
+  HWY_INLINE void see(std::size_t i, const FloatInterval& a, const FloatInterval& b) {
     const std::size_t at = i * kLanes;
     a.lo.store(bounds->a_lo + at), a.hi.store(bounds->a_hi + at);
     b.lo.store(bounds->b_lo + at), b.hi.store(bounds->b_hi + at);

@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 // Returns a float below `value`, by at least 2^-22 of `value`. Widths of blends are double here and f32 in
-// vm/prune/settle.h. The margins of both operands outweigh the rounding of the width, so operands that settle_pairs()
+// vm/prune/settle.h. The margins of both operands outweigh the rounding of the width, so operands that resolve_pairs()
 // finds too far apart to blend do not blend in double either.
 inline float below(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max(), kShare = 0x1p-22, kLeast = 0x1p-126;
@@ -44,7 +44,7 @@ Slope coordinate(double lo, double hi, int axis) {
 }
 
 SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, ChoiceRange* choices, Workspace& workspace) {
-  Machine<Slope> machine(program, workspace, 1);
+  Interpreter<Slope> machine(program, workspace, 1);
   machine.observer().range = choices;
   *machine.first_point() = {coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
   machine.interpret();

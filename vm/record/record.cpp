@@ -120,10 +120,10 @@ RecordedFunction record_function(Opcode opcode, std::span<const double> groups) 
   function.results = run_outline(opcode, groups);
   return function;
 }
-RecordedFunction record_function(Operation operation, bool wide) {
+RecordedFunction record_function(Operation operation, bool doubles) {
   RecordedFunction function;
   const Recording recording(function);
-  function.results = wide ? run_operation<Real>(operation) : run_operation<Batch>(operation);
+  function.results = doubles ? run_operation<Real>(operation) : run_operation<Batch>(operation);
   return function;
 }
 
@@ -140,6 +140,6 @@ RecordedFunction record_outline(Opcode opcode, std::span<const double> groups) {
   return HWY_NAMESPACE::record_function(opcode, groups);
 }
 
-RecordedFunction record(Operation operation, bool wide) { return HWY_NAMESPACE::record_function(operation, wide); }
+RecordedFunction record(Operation operation, bool doubles) { return HWY_NAMESPACE::record_function(operation, doubles); }
 
 }  // namespace fathom::vm

@@ -22,6 +22,6 @@ RecordedFunction record_outline(Opcode opcode, std::span<const double> groups);
 
 // Records an operation that consists of other operations, such as a sine, for float or for double (`wide`), whose
 // coefficients differ. The parameters are the operands.
-RecordedFunction record(Operation operation, bool wide);
+RecordedFunction record(Operation operation, bool doubles);
 
 }  // namespace fathom::vm

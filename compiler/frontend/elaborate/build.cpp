@@ -109,7 +109,7 @@ SceneBuilder::Built SceneBuilder::build(const CheckedNode& root, Context context
                            [this](const CheckedNode& node, Context here, std::span<const Built> children) {
                              ++built_nodes_;
                              Built built = node.use ? built_.at(key(*node.use, here)) : make(node, children);
-                             const Origin origin{node.span, node.name};
+                             const SourceLocation origin{node.span, node.name};
                              if (node.between) transform(built, *node.between, origin);
                              if (node.transform) transform(built, *node.transform, origin);
                              if (here.is_new && !built.painted) paint(built, here, origin);
@@ -138,13 +138,13 @@ SceneBuilder::Built SceneBuilder::make(const CheckedNode& node, std::span<const 
   return built;
 }
 
-void SceneBuilder::transform(Built& built, std::span<const double> params, const Origin& origin) {
+void SceneBuilder::transform(Built& built, std::span<const double> params, const SourceLocation& origin) {
   const NodeId children[] = {built.id};
   built.id = scene_.graph.add(Kind::Transform, params, children, origin);
   built.placements.push_back(built.id);
 }
 
-void SceneBuilder::paint(Built& built, Context context, const Origin& origin) {
+void SceneBuilder::paint(Built& built, Context context, const SourceLocation& origin) {
   if (!context.material) {
     if (!default_material_) {
       default_material_ = static_cast<std::uint32_t>(materials_.size());
@@ -172,7 +172,7 @@ void SceneBuilder::paint(Built& built, Context context, const Origin& origin) {
   for (NodeId& placement : built.placements) {
     const std::span<const double> old = scene_.graph.params(placement);
     const std::vector<double> own(old.begin(), old.end());
-    const Origin place = scene_.graph.origin(placement);
+    const SourceLocation place = scene_.graph.origin(placement);
     placement = scene_.graph.add(scene_.graph.kind(placement), own, std::array<NodeId, 1>{built.id}, place);
     built.id = placement;
   }

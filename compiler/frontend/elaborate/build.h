@@ -37,7 +37,7 @@ class SceneBuilder {
   // Returns the union of the objects. The builder is empty afterwards.
   Scene finish();
   std::vector<Surface> take_surfaces() { return std::move(surfaces_); }
-  std::vector<Span> take_type_spans() { return std::move(type_spans_); }  // as Elaborated::type_spans
+  std::vector<Span> take_type_spans() { return std::move(type_spans_); }  // as ElaboratedScene::type_spans
 
  private:
   // Context of a node. The node's result depends on its object and on the material it inherits.
@@ -61,9 +61,9 @@ class SceneBuilder {
   void build_named(std::uint32_t name, Context context);
   Built build(const CheckedNode& root, Context context);
   Built make(const CheckedNode& node, std::span<const Built> over);
-  void transform(Built& built, std::span<const double> params, const Origin& origin);
+  void transform(Built& built, std::span<const double> params, const SourceLocation& origin);
   bool is_placed(std::optional<std::uint32_t> material) const { return material && placed_[*material]; }
-  void paint(Built& built, Context context, const Origin& origin);
+  void paint(Built& built, Context context, const SourceLocation& origin);
   std::string unique_name(const CheckedNode& node);
   bool too_many_nodes(const CheckedNode& node);
 

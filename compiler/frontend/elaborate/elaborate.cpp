@@ -97,8 +97,8 @@ CheckedScene check_nodes(const RecordReader& reader, const Scope& parameters, Di
   return scene;
 }
 
-Elaborated read_settings(const RecordReader& reader, const Scope& scope, Diagnostics& diagnostics) {
-  Elaborated out;
+ElaboratedScene read_settings(const RecordReader& reader, const Scope& scope, Diagnostics& diagnostics) {
+  ElaboratedScene out;
   const syntax::Value* camera = reader.value("camera");
   if (camera != nullptr) out.camera = read_camera(*camera, scope, diagnostics);
   out.camera.automatic = camera == nullptr;
@@ -128,7 +128,7 @@ Span place_of(const syntax::Record& scene, std::string_view part, std::string_vi
 }
 
 // Checks the settings in the scene. The command line checks the settings that it overrides.
-void check_render_limits(const syntax::Record& record, const Elaborated& scene, const Limits& limits,
+void check_render_limits(const syntax::Record& record, const ElaboratedScene& scene, const Limits& limits,
                          Diagnostics& diagnostics) {
   const auto check = [&](double value, double Limits::*limit, std::string_view part, std::string_view property,
                          const std::string& what) {
@@ -156,7 +156,7 @@ void warn_of_shutter(const syntax::Record& record, const Camera& camera, const S
 
 }  // namespace
 
-std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
+std::optional<ElaboratedScene> elaborate(const syntax::File& file, Diagnostics& diagnostics,
                                     const Definitions& definitions, const Limits& limits, std::optional<Scope> read) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
@@ -171,7 +171,7 @@ std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagn
            : read_parameters(params ? params->value.get() : nullptr, definitions, limits, diagnostics);
   const RecordReader reader(scene_record(), *record, opening(file.root.span), parameters, diagnostics);
   check_version(reader, diagnostics);
-  Elaborated out = read_settings(reader, parameters, diagnostics);
+  ElaboratedScene out = read_settings(reader, parameters, diagnostics);
   check_render_limits(*record, out, limits, diagnostics);
   const CheckedScene scene = check_nodes(reader, parameters, diagnostics);
   // After errors do not warn: a misspelt name may be meant to refer to an apparently unused definition.

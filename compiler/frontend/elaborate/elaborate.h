@@ -15,7 +15,7 @@
 namespace fathom::compiler {
 
 // Scene with its tables. `scene.root` is the union of the objects, each below a Paint node with its surface.
-struct Elaborated : SceneTables {
+struct ElaboratedScene : SceneTables {
   Scene scene;  // described nodes (compiler/derive/derive.h)
   // [node] span of the word that names the node's type. May be shorter than the list of nodes.
   std::vector<Span> type_spans;
@@ -25,7 +25,7 @@ struct Elaborated : SceneTables {
 // Reports every semantic error of the file and returns nullopt if there was one. `definitions` override the values of
 // the scene's parameters. `parameters` are the resulting parameters, if the front end already evaluated the file with
 // them.
-std::optional<Elaborated> elaborate(const syntax::File& file, Diagnostics& diagnostics,
+std::optional<ElaboratedScene> elaborate(const syntax::File& file, Diagnostics& diagnostics,
                                     const Definitions& definitions = {}, const Limits& limits = {},
                                     std::optional<Scope> parameters = std::nullopt);
 

@@ -21,11 +21,11 @@ void put(MaterialNumbers& numbers, const MaterialParameter& parameter, glm::dvec
 }
 
 // Lower bound for textured parameters that must be positive, such as an index of refraction.
-constexpr double kLeastPositive = 1e-3;
+constexpr double kMinPositive = 1e-3;
 
 TexturedParameter textured(const MaterialParameter& parameter, std::uint32_t texture, const PropertySpec& row) {
   double least = row.range.least;
-  if (row.rule == Rule::Positive) least = std::max(least, kLeastPositive);
+  if (row.rule == Rule::Positive) least = std::max(least, kMinPositive);
   if (row.rule == Rule::NotNegative) least = std::max(least, 0.0);
   return {parameter.member, texture, least, row.range.most};
 }

@@ -19,10 +19,10 @@ struct Visit {
 // Reports a cycle: the walk goes from `first` to the end of the stack, and the use `closing` leads back to `first`.
 void report_cycle(const std::vector<Visit>& stack, std::size_t first, const Use& closing, const Names& names,
                   Diagnostics& diagnostics) {
-  constexpr std::size_t kMostNamed = 8;
+  constexpr std::size_t kMaxNamed = 8;
   std::string path;
   for (std::size_t i = first; i < stack.size(); ++i) {
-    if (i - first == kMostNamed) {
+    if (i - first == kMaxNamed) {
       path += fmt::format("... ({} more) -> ", stack.size() - i);
       break;
     }

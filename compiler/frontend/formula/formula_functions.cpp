@@ -67,7 +67,7 @@ FormulaId expand_fbm(const FormulaMaker& make, Arguments a) {
   }
   return sum;
 }
-constexpr int kMostOctaves = 12;
+constexpr int kMaxOctaves = 12;
 
 constexpr FormulaFunction kDerived[] = {
     {"clamp", 3, 3, "", expand_clamp},            // value, minimum, maximum
@@ -77,14 +77,14 @@ constexpr FormulaFunction kDerived[] = {
     {"hypot", 2, 3, "", expand_length},
     {"pow", 2, 2, "", expand_pow},
     {"tan", 1, 1, "", expand_tan},
-    {"fbm", 4, 4, "", expand_fbm, kMostOctaves},  // x, y, z, octaves
+    {"fbm", 4, 4, "", expand_fbm, kMaxOctaves},  // x, y, z, octaves
 };
 
 }  // namespace
 
 std::string FormulaFunction::misfit_of(std::optional<double> last) const {
-  if (most_times == 0 || (last && *last >= 1 && *last <= most_times && *last == std::floor(*last))) return "";
-  return fmt::format("the last argument of `{}` is a whole number from 1 to {}, not {}", name, most_times,
+  if (max_times == 0 || (last && *last >= 1 && *last <= max_times && *last == std::floor(*last))) return "";
+  return fmt::format("the last argument of `{}` is a whole number from 1 to {}, not {}", name, max_times,
                      last ? fmt::format("{}", *last) : "one that varies");
 }
 

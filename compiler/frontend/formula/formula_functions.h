@@ -19,8 +19,8 @@ struct FormulaFunction {
   std::size_t least, most;  // minimum and maximum number of arguments
   std::string_view basic;   // the machine's function; empty for a composed function
   FormulaId (*expand)(const FormulaMaker& make, std::span<const FormulaId> arguments) = nullptr;
-  // Nonzero for a function whose last argument is a repeat count: a constant whole number from 1 to `most_times`.
-  int most_times = 0;
+  // Nonzero for a function whose last argument is a repeat count: a constant whole number from 1 to `max_times`.
+  int max_times = 0;
 
   // Returns the reason why `last` is not a valid last argument, or "" if `last` is valid. nullopt stands for an
   // argument that varies.

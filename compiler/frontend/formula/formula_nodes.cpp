@@ -38,7 +38,7 @@ bool holds_in_float(const Formula& formula, Diagnostics& diagnostics) {
 NodeId make_formula(Graph& graph, const Formula& formula, const std::string& name) {
   std::vector<NodeId> made, operands;
   for (const Formula::Node& node : formula.nodes) {
-    const Origin origin{node.span, name};
+    const SourceLocation origin{node.span, name};
     if (node.function == "const") {
       made.push_back(graph.add(Kind::Constant, std::array<double, 1>{node.value}, {}, origin));
       continue;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kHexDigits = "0123456789abcdef";
 
 // A channel of this size is probably a byte. A smaller channel above 1 may be a linear value that is too large.
-constexpr double kLeastByte = 16;
+constexpr double kMinByte = 16;
 
 // Returns the value of a hexadecimal digit of either case, or npos for other characters.
 std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
@@ -52,7 +52,7 @@ std::string color_text_of(const syntax::Value& value) {
   for (int i = 0; i < 3; ++i) {
     const double channel = (*channels)[i];
     if (!(channel >= 0 && channel <= 255) || channel != std::floor(channel)) return "";
-    bytes = bytes || channel >= kLeastByte;
+    bytes = bytes || channel >= kMinByte;
   }
   if (!bytes) return "";
   return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(channels->r), static_cast<int>(channels->g),

@@ -138,16 +138,16 @@ std::string broken_rule(double number, const PropertySpec& spec, const Limits& l
   return fmt::format("between {} and {}", range.least, range.most);
 }
 
-struct Broken {
+struct ReadFailure {
   std::string rule;
   const Value* value;
 };
 
 // Returns the first number of the value that breaks a rule of its property.
-std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec, const Limits& limits) {
+std::optional<ReadFailure> first_broken(const Value& value, const PropertySpec& spec, const Limits& limits) {
   if (const double* number = std::get_if<double>(&value.data)) {
     const std::string rule = broken_rule(*number, spec, limits);
-    return rule.empty() ? std::nullopt : std::optional(Broken{rule, &value});
+    return rule.empty() ? std::nullopt : std::optional(ReadFailure{rule, &value});
   }
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) return std::nullopt;
@@ -159,10 +159,10 @@ std::optional<Broken> first_broken(const Value& value, const PropertySpec& spec,
     const double* number = std::get_if<double>(&item.data);
     if (number == nullptr) continue;
     const std::string rule = broken_rule(*number, spec, limits);
-    if (!rule.empty()) return Broken{rule, &item};
+    if (!rule.empty()) return ReadFailure{rule, &item};
     all_zero = all_zero && *number == 0;
   }
-  if (spec.rule == Rule::NotZero && all_zero) return Broken{"a direction, not the zero vector", &value};
+  if (spec.rule == Rule::NotZero && all_zero) return ReadFailure{"a direction, not the zero vector", &value};
   return std::nullopt;
 }
 
@@ -302,7 +302,7 @@ void RecordReader::check_value(const Value& value, const Value& written, const P
     diagnostics_.error("E0101", value.span,
                        fmt::format("`{}` must be {}{}", row.name, expected(row.type, diagnostics_), instead), "",
                        retype(value, written, row));
-  } else if (const std::optional<Broken> broken = first_broken(value, row, scope_.limits())) {
+  } else if (const std::optional<ReadFailure> broken = first_broken(value, row, scope_.limits())) {
     diagnostics_.error(range_code_, broken->value->span,
                        fmt::format("`{}` must be {}{}", row.name, broken->rule, explain(written, *broken->value)), "",
                        correct(value, row));

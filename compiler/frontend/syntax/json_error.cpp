@@ -212,8 +212,8 @@ bool good_number(std::string_view text, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-Skipped skip_to_token(std::string_view text, std::size_t from, std::size_t token_end) {
-  Skipped skipped;
+SkippedText skip_to_token(std::string_view text, std::size_t from, std::size_t token_end) {
+  SkippedText skipped;
   std::size_t at = from;
   while (at < text.size()) {
     const char c = text[at];

@@ -13,7 +13,7 @@
 namespace fathom::compiler {
 
 // Characters skipped between the end of one token and the beginning of the next.
-struct Skipped {
+struct SkippedText {
   std::size_t begin = 0;             // offset of the next token; the text's size if there is no next token
   std::optional<std::size_t> comma;  // offset of the last comma skipped
   bool colon = false;                // true if a colon was skipped
@@ -21,7 +21,7 @@ struct Skipped {
 
 // Skips blanks, comments, and commas and colons, except a comma or colon that is itself the token ending at
 // `token_end`.
-Skipped skip_to_token(std::string_view text, std::size_t from, std::size_t token_end);
+SkippedText skip_to_token(std::string_view text, std::size_t from, std::size_t token_end);
 
 // Parser state at the point where parsing stopped.
 struct JsonPlace {
@@ -33,7 +33,7 @@ struct JsonPlace {
   bool empty = true;          // the record or list has no entries yet
   std::size_t token_end = 0;  // bytes consumed; larger than the text's size if the lexer reached the end
   bool overflow = false;      // the number is well formed but too large for a double
-  Skipped skipped;
+  SkippedText skipped;
 };
 
 void report_json_error(const Source& source, const JsonPlace& place, Diagnostics& diagnostics);

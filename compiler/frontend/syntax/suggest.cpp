@@ -273,14 +273,14 @@ std::string_view suggest(std::string_view word, const std::vector<std::string_vi
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known) {
   // A scene may name thousands of nodes, so list at most this many. List one more rather than print "and 1 more",
   // which is as long as the name.
-  constexpr std::size_t kMostListed = 30;
+  constexpr std::size_t kMaxListed = 30;
   if (known.empty()) return "";
   std::vector<std::string_view> sorted = known;
   std::sort(sorted.begin(), sorted.end());
-  const std::size_t listed = sorted.size() == kMostListed + 1 ? sorted.size() : std::min(sorted.size(), kMostListed);
+  const std::size_t listed = sorted.size() == kMaxListed + 1 ? sorted.size() : std::min(sorted.size(), kMaxListed);
   const std::string_view meant = suggest(word, known);
   // A long list would hide the suggestion.
-  if (!meant.empty() && known.size() > kMostListed) return fmt::format("did you mean `{}`?", meant);
+  if (!meant.empty() && known.size() > kMaxListed) return fmt::format("did you mean `{}`?", meant);
   std::string out = meant.empty() ? "" : fmt::format("did you mean `{}`? ", meant);
   out +=
       fmt::format("known: {}", fmt::join(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(listed), ", "));

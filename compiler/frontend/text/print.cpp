@@ -26,7 +26,7 @@ using syntax::Property;
 using SyntaxRecord = syntax::Record;
 using SyntaxValue = syntax::Value;
 
-constexpr std::size_t kMostOperands = 8;  // operands of an operator chain; longer chains are printed as calls
+constexpr std::size_t kMaxOperands = 8;  // operands of an operator chain; longer chains are printed as calls
 
 bool is_no_name(std::string_view word) {
   return is_reserved(word) || word == "x" || word == "y" || word == "z" || formula_constant(word);
@@ -326,7 +326,7 @@ class TextPrinter {
     std::vector<std::string> operands;
     for (const SyntaxValue& part : of) operands.push_back(node(part).atom());
     const auto* row = std::ranges::find(kInfixWords, spec.name, &InfixWord::type);
-    if (row != std::end(kInfixWords) && operands.size() > 1 && operands.size() <= kMostOperands) {
+    if (row != std::end(kInfixWords) && operands.size() > 1 && operands.size() <= kMaxOperands) {
       const std::string blend = blend_text(record, spec, *row);
       return {fmt::format("{}", fmt::join(operands, fmt::format(" {}{} ", row->mark, blend))), true};
     }

@@ -84,11 +84,11 @@ JsonComments comments_of_text(const Source& source, const syntax::File& file) {
   return comments;
 }
 
-std::optional<KeptScene> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
+std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
                                                  const ImportedFiles& files) {
   std::optional<ReadText> made = read(source, files, {}, limits, true, diagnostics);
   if (!made || diagnostics.has_errors()) return std::nullopt;
-  return KeptScene{std::move(made->file), std::move(made->evaluated.frozen)};
+  return SceneWithFormulas{std::move(made->file), std::move(made->evaluated.frozen)};
 }
 
 }  // namespace fathom::compiler

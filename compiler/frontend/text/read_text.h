@@ -43,13 +43,13 @@ std::optional<std::pair<syntax::File, Scope>> read_text_scene(Source& source, co
 JsonComments comments_of_text(const Source& source, const syntax::File& file);
 
 // Scene whose numbers are formulas of its parameters where possible, and the places where that is impossible.
-struct KeptScene {
+struct SceneWithFormulas {
   syntax::File file;
   std::vector<Span> frozen;  // places that depend on parameter values: conditions, ranges, indices
 };
 
 // Reads the same scene as a JSON file that keeps the parameters.
-std::optional<KeptScene> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
+std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
                                                  const ImportedFiles& files = {});
 
 }  // namespace fathom::compiler

@@ -11,7 +11,7 @@ using OrderedJson = nlohmann::ordered_json;
 std::string print(const OrderedJson& json) { return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace); }
 
 OrderedJson immediate_json(const vm::Program& program, const vm::OpcodeInfo& row, std::size_t word, int index) {
-  return vm::is_integer_immediate(row, index) ? OrderedJson(program.words[word]) : OrderedJson(program.wide[word]);
+  return vm::is_integer_immediate(row, index) ? OrderedJson(program.words[word]) : OrderedJson(program.doubles[word]);
 }
 
 // Returns the immediates by name. For an outline, returns a list with one object per group.
@@ -34,10 +34,10 @@ void add_modes(OrderedJson& line, const vm::Program& program, std::size_t at, co
   const std::uint32_t operand = vm::operand_of(word);
   if (row.has_operand) line["operand"] = operand;
   if (row.has_operand || operand == 0) return;
-  const double* leading = program.wide.data() + at + 1;
+  const double* leading = program.doubles.data() + at + 1;
   if (row.form == vm::Form::Shape) {
-    if (operand & vm::kMoved) line["at"] = {leading[0], leading[1], leading[2]};
-    if (operand & vm::kJoined) line["min"] = true;
+    if (operand & vm::kFusedTranslate) line["at"] = {leading[0], leading[1], leading[2]};
+    if (operand & vm::kFusedMin) line["min"] = true;
     return;
   }
   const vm::Sources sources = vm::sources_of(word);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <variant>
 
-#include "compiler/graph/knowledge.h"
+#include "compiler/graph/node_facts.h"
 #include "compiler/source/limits.h"
 #include "runtime/field/field.h"
 #include "runtime/render.h"
@@ -20,9 +20,9 @@ namespace {
 constexpr double kMaxCost = 2e10;
 
 // Makes a program of a region's part. Its instructions keep the symbols of the instructions that they come from.
-vm::VerifiedProgram as_program(const vm::Part& part, const vm::Program& whole) {
+vm::VerifiedProgram as_program(const vm::PrunedProgram& part, const vm::Program& whole) {
   vm::Program program;
-  program.words = part.words, program.wide = part.wide, program.locals = part.locals;
+  program.words = part.words, program.doubles = part.doubles, program.locals = part.locals;
   program.source_name = whole.source_name;
   std::uint32_t at = 0;
   for (const std::uint32_t source : part.sources) {

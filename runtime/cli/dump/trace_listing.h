@@ -10,9 +10,9 @@
 namespace fathom::cli {
 
 // Returns the cost of a trace in multiply-adds, which is quadratic in the program's length. `fathom dump` refuses
-// traces above kMostTraceWork, which takes a second or two.
+// traces above kMaxTraceWork, which takes a second or two.
 double trace_work(const vm::VerifiedProgram& program);
-inline constexpr double kMostTraceWork = 1e9;
+inline constexpr double kMaxTraceWork = 1e9;
 
 // Returns the listing with stacks at `point`, in the program's coordinates. The stacks are comments, so that the
 // assembler accepts the listing. The last line names the first instruction that produced a NaN or an infinity, if any

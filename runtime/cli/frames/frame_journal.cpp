@@ -74,7 +74,7 @@ FrameJournal::Entry entry_of(const runtime::FilmHeader& header, const RenderRequ
 
 }  // namespace
 
-std::string FrameJournal::path_beside(const std::string& output) {
+std::string FrameJournal::path_for(const std::string& output) {
   const std::filesystem::path path(output);
   std::string stem = path.stem().string();
   stem = stem.substr(0, stem.find('#'));

@@ -31,7 +31,7 @@ class FrameJournal {
   };
 
   // Returns the journal's path for the first output: "frames/hop.png" -> "frames/hop.frames".
-  static std::string path_beside(const std::string& output);
+  static std::string path_for(const std::string& output);
 
   explicit FrameJournal(std::string path) : path_(std::move(path)) {}
 

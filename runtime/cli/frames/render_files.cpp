@@ -1,12 +1,12 @@
 #include "runtime/cli/frames/render_files.h"
 
 #include "runtime/cli/picture/cost_map.h"
-#include "runtime/cli/picture/picture_job.h"
+#include "runtime/cli/picture/render_job.h"
 
 namespace fathom::cli {
 
 std::vector<std::string> finished_files(const RenderRequest& request) {
-  std::vector<std::string> files = files_of(pictures_of(request));
+  std::vector<std::string> files = files_of(image_files_of(request));
   if (request.cost_map) {
     for (const std::string& map : cost_map_files(*request.cost_map)) files.push_back(map);
   }
@@ -23,7 +23,7 @@ std::vector<std::string> output_files(const RenderRequest& request) {
 }
 
 std::optional<ExitCode> check_outputs(const RenderRequest& request, const Streams& streams) {
-  if (const auto code = check_paths(pictures_of(request), streams)) return code;
+  if (const auto code = check_paths(image_files_of(request), streams)) return code;
   if (const auto checkpoint = checkpoint_of(request)) {
     if (const auto code = checkpoint->check_path(streams)) return code;
   }

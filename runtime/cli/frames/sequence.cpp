@@ -8,8 +8,8 @@
 #include "runtime/cli/frames/frame_journal.h"
 #include "runtime/cli/frames/render_files.h"
 #include "runtime/cli/frames/scene_frames.h"
-#include "runtime/cli/picture/picture.h"
-#include "runtime/cli/picture/picture_job.h"
+#include "runtime/cli/picture/prepared_render.h"
+#include "runtime/cli/picture/render_job.h"
 
 namespace fathom::cli {
 namespace {
@@ -23,7 +23,7 @@ class FrameRun {
         sequence_(sequence),
         streams_(streams),
         interruption_(interruption),
-        journal_path_(FrameJournal::path_beside(request.outputs.front().path)),
+        journal_path_(FrameJournal::path_for(request.outputs.front().path)),
         journal_(journal_path_) {}
 
   ExitCode run() {
@@ -95,10 +95,10 @@ class FrameRun {
   ExitCode render(int index) {
     const RenderRequest request = request_of(index);
     const int frame = request.frame->number;
-    auto prepared = prepare_picture(request, input_, kept_, streams_);
+    auto prepared = prepare_render(request, input_, cache_, streams_);
     if (const auto* code = std::get_if<ExitCode>(&prepared)) return fail_at(frame, *code);
-    Picture& picture = *std::get<std::unique_ptr<Picture>>(prepared);
-    PictureJob job(picture, streams_, nullptr, interruption_);
+    PreparedRender& picture = *std::get<std::unique_ptr<PreparedRender>>(prepared);
+    RenderJob job(picture, streams_, nullptr, interruption_);
     last_complete_ = true;
     if (request.resume && journal_.has(frame, job.header(), picture.request)) {
       ++there_;
@@ -111,8 +111,8 @@ class FrameRun {
       return code;
     }
     ++rendered_;
-    regions_built_ += job.stats().region_bytes > 0 && job.stats().regions_kept == 0;
-    regions_kept_ += job.stats().regions_kept;
+    regions_built_ += job.stats().region_bytes > 0 && job.stats().regions_reused == 0;
+    regions_kept_ += job.stats().regions_reused;
     if (const auto problem = journal_.add(frame, job.header(), picture.request)) return fail(streams_, kIo, *problem);
     return code;
   }
@@ -152,7 +152,7 @@ class FrameRun {
   std::optional<Interruption>& interruption_;
   const std::string journal_path_;
   FrameJournal journal_;
-  KeptWork kept_;
+  RenderCache cache_;
   bool last_complete_ = true;
   std::size_t rendered_ = 0, there_ = 0;
   std::size_t regions_built_ = 0, regions_kept_ = 0;

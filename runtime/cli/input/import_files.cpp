@@ -42,8 +42,8 @@ compiler::ImportReader import_reader(const SceneArguments& arguments, const Stre
     }
     if (fs::exists(real, error) && !fs::is_regular_file(real, error)) return compiler::ImportFault{"it is no file"};
     auto text = read_text(real.string(), limits, streams);
-    if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-      return compiler::ImportFault{unreadable->reason, unreadable->help};
+    if (const auto* read_error = std::get_if<ReadError>(&text)) {
+      return compiler::ImportFault{read_error->reason, read_error->help};
     }
     return std::get<std::string>(std::move(text));
   };

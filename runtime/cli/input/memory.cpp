@@ -5,7 +5,7 @@
 
 namespace fathom::cli {
 
-std::string in_words(double bytes) {
+std::string format_bytes(double bytes) {
   constexpr double kMiB = 1 << 20, kGiB = 1 << 30;
   return bytes < kGiB ? fmt::format("{:.0f} MiB", bytes / kMiB) : fmt::format("{:.1f} GiB", bytes / kGiB);
 }

@@ -15,9 +15,9 @@ double allowed_memory(const compiler::Limits& limits);
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 
 // Bytes per pixel: of the image being written (three floats and their encoded form), and of the denoiser's work.
-inline constexpr double kPictureBytes = 24, kDenoiserBytes = 128;
+inline constexpr double kImageBytes = 24, kDenoiserBytes = 128;
 
 // Formats bytes as "12 MiB".
-std::string in_words(double bytes);
+std::string format_bytes(double bytes);
 
 }  // namespace fathom::cli

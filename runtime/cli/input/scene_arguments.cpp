@@ -13,29 +13,29 @@ namespace fathom::cli {
 namespace {
 
 // Reads a definition: "r=0.5" or "angle=pi/4".
-Verdict read_definition(std::string_view text, std::pair<std::string, double>& definition) {
+OptionResult read_definition(std::string_view text, std::pair<std::string, double>& definition) {
   const std::size_t middle = text.find('=');
   if (middle == std::string_view::npos || middle == 0) {
-    return Complaint{fmt::format("`{}` is not a name and a value", text), "write it as r=0.5"};
+    return OptionError{fmt::format("`{}` is not a name and a value", text), "write it as r=0.5"};
   }
   const std::string_view formula = text.substr(middle + 1);
   compiler::Diagnostics diagnostics;
   const auto value = compiler::read_number({{}, std::string(formula)}, compiler::Scope(), diagnostics);
   if (!value) {
     const compiler::Diagnostic& first = diagnostics.all().front();
-    return Complaint{fmt::format("`{}`: {}", formula, first.message), first.help.empty() ? "" : first.help.front()};
+    return OptionError{fmt::format("`{}`: {}", formula, first.message), first.help.empty() ? "" : first.help.front()};
   }
   definition = {std::string(text.substr(0, middle)), *value};
   return std::nullopt;
 }
 
 // Reads a limit, "nodes=2000000". The value may be a formula.
-Verdict read_limit(std::string_view text, compiler::Limits& limits) {
+OptionResult read_limit(std::string_view text, compiler::Limits& limits) {
   std::pair<std::string, double> given;
-  if (Verdict verdict = read_definition(text, given)) {
+  if (OptionResult error = read_definition(text, given)) {
     if (text.find('=') == std::string_view::npos || text.starts_with('='))
-      verdict->help = "write it as nodes=2000000";
-    return verdict;
+      error->help = "write it as nodes=2000000";
+    return error;
   }
   const auto& [name, value] = given;
   const compiler::LimitRow* row = compiler::find_limit(name);
@@ -43,12 +43,12 @@ Verdict read_limit(std::string_view text, compiler::Limits& limits) {
     std::vector<std::string_view> names;
     for (const compiler::LimitRow& known : compiler::kLimits) names.push_back(known.name);
     const std::string_view near = compiler::nearest(name, names);
-    return Complaint{fmt::format("there is no limit `{}`", name),
+    return OptionError{fmt::format("there is no limit `{}`", name),
                      near.empty() ? "`fathom help limits` lists them" : fmt::format("did you mean `{}`?", near)};
   }
   const bool whole = value == std::floor(value) || row->value == &compiler::Limits::coordinate;
   if (!(value >= 1 && value <= row->largest && whole)) {
-    return Complaint{
+    return OptionError{
         fmt::format("`{}` can be from 1 to {:.15g} {}{}", name, row->largest, row->unit, whole ? "" : ", whole ones"),
         value > row->largest ? fmt::format("it goes no higher for {}", row->why) : ""};
   }
@@ -118,11 +118,11 @@ ExitCode fail_whole(const std::string& path, const std::string& reason, const st
 Setter pass_name(std::optional<std::string>& target) {
   std::vector<std::string_view> names = {"graph"};
   for (const std::string_view name : compiler::pass_names()) names.push_back(name);
-  const auto set = [names, &target](std::string_view text) -> Verdict {
+  const auto set = [names, &target](std::string_view text) -> OptionResult {
     int index = 0;
-    Verdict verdict = one_of(names, index)(text);
-    if (!verdict) target = text;
-    return verdict;
+    OptionResult error = one_of(names, index)(text);
+    if (!error) target = text;
+    return error;
   };
   return {set, {names.begin(), names.end()}};
 }

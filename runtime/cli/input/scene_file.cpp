@@ -25,10 +25,10 @@ std::span<const std::uint8_t> bytes_of(const std::string& text) {
 std::variant<compiler::Source, ExitCode> read_any(const SceneArguments& arguments, const Streams& streams) {
   const std::string& path = arguments.path;
   auto text = read_text(path, arguments.limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) {
-    const Help help = unreadable->help.empty() ? Help{} : Help{unreadable->help};
-    return fail_about(arguments, unreadable->code,
-                      fmt::format("cannot read {}: {}", cli::quoted(path), unreadable->reason), help, streams);
+  if (const auto* read_error = std::get_if<ReadError>(&text)) {
+    const Help help = read_error->help.empty() ? Help{} : Help{read_error->help};
+    return fail_about(arguments, read_error->code,
+                      fmt::format("cannot read {}: {}", cli::quoted(path), read_error->reason), help, streams);
   }
   return compiler::Source(source_name(path), std::get<std::string>(std::move(text)));
 }
@@ -48,39 +48,22 @@ bool asks_for_graph(const compiler::CompileOptions& options) {
   return options.stop_after || options.on_syntax || options.lint;
 }
 
-// Prepares stored programs for execution without proofs, unless they exceed the limits.
-std::variant<compiler::CompiledScene, ExitCode> within_limits(compiler::CompiledScene stored,
-                                                              const SceneArguments& arguments,
-                                                              const Streams& streams) {
-  if (const auto excess = compiler::excess_of(stored, arguments.limits)) {
+ExitCode fail_without_text(const SceneArguments& arguments, const Streams& streams) {
+  Help help = {"`fathom compile` without --no-text keeps the text"};
+  if (!arguments.definitions.empty()) help.insert(help.begin(), "its parameters are numbers in the programs by now");
+  return fail(streams, kUsage,
+              fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
+              help);
+}
+
+// Returns the stored scene, if it is within the limits.
+std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
+                                                            const SceneArguments& arguments, const Streams& streams) {
+  if (const auto excess = compiler::excess_of(stored.scene, arguments.limits)) {
     return fail_whole(arguments.path, excess->what, excess->remedy, arguments.error_format, streams);
   }
-  return compiler::unproved(std::move(stored));
-}
-
-constexpr const char* kKeepText = "`fathom compile` without --no-text keeps the text";
-
-ExitCode fail_without_text(const SceneArguments& arguments, const Streams& streams) {
-  return fail(streams, kUsage,
-              fmt::format("{} holds programs without their scene: its parameters are numbers in them by now",
-                          cli::quoted(arguments.path)),
-              {kKeepText});
-}
-
-// Handles a compiled file without the scene's text.
-std::variant<compiler::CompiledScene, ExitCode> take_stored(compiler::StoredScene stored,
-                                                            const SceneArguments& arguments, const Streams& streams,
-                                                            const compiler::CompileOptions& options) {
-  if (!arguments.definitions.empty()) return fail_without_text(arguments, streams);
-  if (asks_for_graph(options)) {
-    return fail(
-        streams, kUsage,
-        fmt::format("{} holds programs without the scene they were compiled from", cli::quoted(arguments.path)),
-        {kKeepText});
-  }
-  note(streams,
-       fmt::format("{} holds programs without their scene: nothing is proved of them", cli::quoted(arguments.path)));
-  return within_limits(std::move(stored.scene), arguments, streams);
+  if (!stored.contents.text) stored.scene.camera.shutter = 0;  // other moments are compiled from the text
+  return as_claimed(std::move(stored.scene));
 }
 
 // Renames the source for messages: text from a compiled file gets the names of both files.
@@ -141,8 +124,15 @@ std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, con
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options) {
-  if (input.stored && !input.stored->contents.text) {
-    return take_stored(*std::move(input.stored), arguments, streams, options);
+  Verbosity verbosity(streams.verbosity, streams);
+  if (input.stored) {
+    const bool needs_text = !arguments.definitions.empty() || asks_for_graph(options);
+    if (!needs_text) {
+      auto scene = take_stored(*std::move(input.stored), arguments, streams);
+      if (const auto* read = std::get_if<compiler::CompiledScene>(&scene)) verbosity.describe(*read);
+      return scene;
+    }
+    if (!input.stored->contents.text) return fail_without_text(arguments, streams);
   }
   compiler::Diagnostics diagnostics;
   options.definitions =
@@ -151,7 +141,6 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   options.limits.memory = allowed_memory(arguments.limits);
   // A compiled file is rendered as is: its model is not put on a stage with ground and lamp.
   if (input.stored) options.stage = false;
-  Verbosity verbosity(streams.verbosity, streams);
   if (const auto watch = verbosity.watch_compiler().on_pass) {
     options.on_pass = [watch, own = options.on_pass](std::string_view pass, const compiler::Scene& graph) {
       if (own) own(pass, graph);
@@ -167,18 +156,10 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);
   if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
   verbosity.describe(*scene);
-  const bool comparable = input.stored && arguments.definitions.empty() && !options.stop_after;
-  if (comparable && compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
-    if (asks_for_graph(options)) {
-      note(streams, fmt::format("{}: this program makes other programs of the scene in it than those in the file, of "
-                                "which nothing is said here. `fathom compile` makes it anew",
-                                cli::quoted(arguments.path)));
-      return std::move(*scene);
-    }
-    note(streams, fmt::format("{}: this program makes other programs of the scene in it; those in the file are run, "
-                              "and nothing is proved of them. `fathom compile` makes it anew",
-                              cli::quoted(arguments.path)));
-    return within_limits(std::move(input.stored->scene), arguments, streams);
+  if (input.stored && options.lint && arguments.definitions.empty() &&
+      compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
+    return fail_whole(arguments.path, "its programs are not those of the scene in it, so nothing is proved of them",
+                      "`fathom compile` makes it anew", arguments.error_format, streams);
   }
   return std::move(*scene);
 }
@@ -196,14 +177,12 @@ std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, co
   return about_definitions(diagnostics) ? kUsage : kBadScene;
 }
 
-compiler::CompiledScene proved_or_claimed(const SceneInput& input) {
-  const compiler::StoredScene& stored = *input.stored;
-  compiler::Diagnostics ignored;
-  compiler::CompileOptions options;
-  options.definitions = stored.contents.definitions;
-  const auto compiled = stored.contents.text ? compiler::compile(input.source, ignored, options) : std::nullopt;
-  if (compiled && compiler::scene_digest(*compiled) == compiler::scene_digest(stored.scene)) return stored.scene;
-  return compiler::unproved(stored.scene);
+compiler::CompiledScene as_claimed(compiler::CompiledScene stored) {
+  constexpr std::string_view kProved = "(proved)";
+  std::string& summary = stored.summary;
+  for (std::size_t at; (at = summary.find(kProved)) != summary.npos;)
+    summary.replace(at, kProved.size(), "(claimed)");
+  return stored;
 }
 
 }  // namespace fathom::cli

@@ -5,7 +5,7 @@
 #include <optional>
 #include <variant>
 
-#include "compiler/artefact/load.h"
+#include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
 #include "compiler/frontend/animation.h"
 #include "runtime/cli/input/scene_arguments.h"
@@ -31,9 +31,9 @@ struct SceneText {
 std::variant<SceneText, ExitCode> read_scene_text(SceneArguments& arguments, const Streams& streams);
 
 // Compiles the scene and prints all errors and warnings. After errors, returns kBadScene, or kUsage if they concern
-// the command line's values for parameters. If a compiled file has no text, or programs that differ from those of its
-// text, then its programs are used as they are, without proofs and with a note. This fallback does not apply if
-// `options` ask for intermediate results of the compilation.
+// the command line's values for parameters. A compiled file is not compiled again: the scene is the stored one, with
+// its claims, unless the command line sets parameters or `options` ask for intermediate results, both of which need
+// the text. With options.lint, the programs of the text must be those of the file.
 std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, const SceneArguments& arguments,
                                                               const Streams& streams,
                                                               compiler::CompileOptions options = {});
@@ -43,8 +43,7 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
 std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
                                                            const Streams& streams);
 
-// Returns a stored scene as in its file, including source locations and instruction names. Stored proofs are kept if
-// compiling the text gives the same programs, and otherwise dropped.
-compiler::CompiledScene proved_or_claimed(const SceneInput& input);
+// Returns the stored scene, whose summary says which facts are claims of the file.
+compiler::CompiledScene as_claimed(compiler::CompiledScene stored);
 
 }  // namespace fathom::cli

@@ -11,38 +11,38 @@
 namespace fathom::cli {
 namespace {
 
-std::variant<std::string, Unreadable> read_all(std::istream& in, const compiler::Limits& limits) {
+std::variant<std::string, ReadError> read_all(std::istream& in, const compiler::Limits& limits) {
   std::string text;
   char block[1 << 16];
   while (in.read(block, sizeof block) || in.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(in.gcount()));
     const auto size = static_cast<double>(text.size());
     if (size > limits.file_size) {
-      return Unreadable{fmt::format("it has more than {:.15g} bytes, as many as are read", limits.file_size),
+      return ReadError{fmt::format("it has more than {:.15g} bytes, as many as are read", limits.file_size),
                         compiler::raise(&compiler::Limits::file_size, 2 * limits.file_size), kBadScene};
     }
   }
-  if (in.bad()) return Unreadable{std::strerror(errno)};
+  if (in.bad()) return ReadError{std::strerror(errno)};
   return text;
 }
 
 }  // namespace
 
-std::variant<std::string, Unreadable> read_text(const std::string& path, const compiler::Limits& limits,
+std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
                                                 const Streams& streams) {
   if (path == "-") return read_all(streams.in, limits);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    return Unreadable{"it is a directory"};
+    return ReadError{"it is a directory"};
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Unreadable{std::strerror(errno)};
+  if (!file) return ReadError{std::strerror(errno)};
   return read_all(file, limits);
 }
 
-ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable) {
-  return fail(streams, unreadable.code, fmt::format("cannot read {}: {}", cli::quoted(path), unreadable.reason),
-              unreadable.help.empty() ? Help{} : Help{unreadable.help});
+ExitCode fail(const Streams& streams, const std::string& path, const ReadError& read_error) {
+  return fail(streams, read_error.code, fmt::format("cannot read {}: {}", cli::quoted(path), read_error.reason),
+              read_error.help.empty() ? Help{} : Help{read_error.help});
 }
 
 std::string quoted(const std::string& path) { return path == "-" ? "standard input" : "`" + path + "`"; }

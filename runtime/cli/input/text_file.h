@@ -12,14 +12,14 @@ namespace fathom::cli {
 
 // Returns the text of a file, or of standard input for "-", or the reason why it cannot be read. Reads no more than
 // the limit `file-size`, whatever the kind of file.
-struct Unreadable {
+struct ReadError {
   std::string reason;
   std::string help = "";
   ExitCode code = kIo;
 };
-std::variant<std::string, Unreadable> read_text(const std::string& path, const compiler::Limits& limits,
+std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
                                                 const Streams& streams);
-ExitCode fail(const Streams& streams, const std::string& path, const Unreadable& unreadable);
+ExitCode fail(const Streams& streams, const std::string& path, const ReadError& read_error);
 
 // Name of the file for messages: quoted() within a sentence, source_name() before a line number.
 std::string quoted(const std::string& path);

@@ -106,24 +106,24 @@ std::optional<int> Arguments::parse(std::span<const std::string> args, const Str
   for (const Option& option : options_) {
     for (const std::string& text : option.texts) {
       const bool swallowed = text.starts_with("--") && app_->get_option_no_throw(text) != nullptr;
-      const Verdict verdict = swallowed ? Complaint{"its value is missing", ""} : option.setter(text);
-      if (!verdict) continue;
-      return report_usage(streams, longest_name(*option.option) + ": " + verdict->problem,
-                          verdict->help.empty() ? Help{} : Help{verdict->help});
+      const OptionResult error = swallowed ? OptionError{"its value is missing", ""} : option.setter(text);
+      if (!error) continue;
+      return report_usage(streams, longest_name(*option.option) + ": " + error->problem,
+                          error->help.empty() ? Help{} : Help{error->help});
     }
   }
   return std::nullopt;
 }
 
-std::vector<std::string> Arguments::Given::arguments() const {
+std::vector<std::string> Arguments::ParsedOption::arguments() const {
   if (values.empty()) return {name};
   std::vector<std::string> result;
   for (const std::string& value : values) result.push_back(name + "=" + value);
   return result;
 }
 
-std::vector<Arguments::Given> Arguments::given() const {
-  std::vector<Given> result;
+std::vector<Arguments::ParsedOption> Arguments::parsed_options() const {
+  std::vector<ParsedOption> result;
   for (const CLI::Option* option : app_->get_options()) {
     if (option->count() == 0 || option->get_positional()) continue;
     const auto own =

@@ -52,12 +52,12 @@ class Arguments {
 
   // Returns the options given to parse(), without positional arguments, each by its longest name and with its values
   // as written. Parsing the result again gives the same request.
-  struct Given {
+  struct ParsedOption {
     std::string name;                 // "--spp"
     std::vector<std::string> values;  // empty for a flag
     std::vector<std::string> arguments() const;
   };
-  std::vector<Given> given() const;
+  std::vector<ParsedOption> parsed_options() const;
 
  private:
   struct Option {

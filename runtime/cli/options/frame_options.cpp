@@ -12,19 +12,19 @@ namespace {
 
 constexpr std::size_t kUsualDigits = 4;
 
-Verdict read_frames(std::string_view text, FrameOptions& options) {
+OptionResult read_frames(std::string_view text, FrameOptions& options) {
   options.all = text == "all";
   options.range.reset();
   if (options.all) return std::nullopt;
   const auto wrong = [&] {
-    return Complaint{fmt::format("`{}` are no frames", text),
+    return OptionError{fmt::format("`{}` are no frames", text),
                      "write 7, 0:48 or 0:48:2, the second number not among them and the third the step; or all"};
   };
   std::int64_t parts[3] = {0, 0, 1};
   std::size_t count = 0;
   for (std::string_view rest = text;; ++count) {
     const std::size_t end = std::min(rest.find(':'), rest.size());
-    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMostFrames, parts[count]))
+    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMaxFrames, parts[count]))
       return wrong();
     if (end == rest.size()) break;
     rest.remove_prefix(end + 1);
@@ -36,13 +36,13 @@ Verdict read_frames(std::string_view text, FrameOptions& options) {
 }
 
 // Reads frames per second: "24", "23.976" or "30000/1001".
-Verdict read_fps(std::string_view text, double& fps) {
+OptionResult read_fps(std::string_view text, double& fps) {
   const std::size_t over = text.find('/');
   const std::optional<double> number = to_number(text.substr(0, over));
   const std::optional<double> divisor = over == text.npos ? 1 : to_number(text.substr(over + 1));
   const double value = number && divisor ? *number / *divisor : 0;
-  if (!(value >= compiler::kLeastFps && value <= compiler::kMostFps)) {
-    return Complaint{fmt::format("`{}` is not a number from {} to {}", text, compiler::kLeastFps, compiler::kMostFps),
+  if (!(value >= compiler::kMinFps && value <= compiler::kMaxFps)) {
+    return OptionError{fmt::format("`{}` is not a number from {} to {}", text, compiler::kMinFps, compiler::kMaxFps),
                      "frames a second, as 24, 23.976 or 30000/1001"};
   }
   fps = value;

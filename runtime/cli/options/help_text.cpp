@@ -12,9 +12,9 @@
 namespace fathom::cli {
 namespace {
 
-constexpr int kLeastColumns = 40, kUsualColumns = 80, kMostColumns = 120;
+constexpr int kMinColumns = 40, kUsualColumns = 80, kMaxColumns = 120;
 constexpr int kDocColumn = 30;    // column at which an option's description begins
-constexpr int kLeastDoc = 30;     // with fewer columns for it, the description gets lines of its own
+constexpr int kMinDoc = 30;     // with fewer columns for it, the description gets lines of its own
 constexpr int kNarrowIndent = 6;  // indentation of such a description
 
 // Returns the width in code points.
@@ -81,7 +81,7 @@ int terminal_columns() {
   } else if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
     columns = size.ws_col;
   }
-  return std::clamp(columns, kLeastColumns, kMostColumns);
+  return std::clamp(columns, kMinColumns, kMaxColumns);
 }
 
 std::vector<std::string> wrap(std::string_view text, int width) {
@@ -107,7 +107,7 @@ std::string paragraph(std::string_view text, int indent, int columns) {
 }
 
 std::string hanging(std::string_view name, std::string_view doc, int indent, int columns) {
-  const bool narrow = columns - indent < kLeastDoc;
+  const bool narrow = columns - indent < kMinDoc;
   if (narrow) indent = kNarrowIndent;
   const bool fits = 2 + width_of(name) <= columns;
   std::string text = fits ? blanks(2) + std::string(name) + '\n' : paragraph(name, 2, columns);

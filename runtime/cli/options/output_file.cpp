@@ -28,24 +28,24 @@ std::filesystem::path canonical_name(const std::string& path) {
 
 }  // namespace
 
-Verdict read_output(std::string_view text, Output& output) {
+OptionResult read_output(std::string_view text, Output& output) {
   output.path = text;
   output.format = output.standard() ? &runtime::kImageFormats.front() : runtime::image_format_of(output.path);
   if (output.format != nullptr || text.ends_with(kFilmEnding)) return std::nullopt;
-  return Complaint{fmt::format("`{}` does not end in a picture format's name", text),
+  return OptionError{fmt::format("`{}` does not end in a picture format's name", text),
                    fmt::format("valid endings: {}, {}", runtime::image_endings(), kFilmEnding)};
 }
 
-Verdict read_shown_output(std::string_view text, Output& output) {
+OptionResult read_display_output(std::string_view text, Output& output) {
   output.path = text;
   output.format = output.standard() ? &runtime::kImageFormats.front() : runtime::image_format_of(output.path);
-  if (output.format != nullptr && output.format->shown) return std::nullopt;
+  if (output.format != nullptr && output.format->for_display) return std::nullopt;
   const char* problem = output.format ? "`{}`: this format holds numbers, not a picture to be shown"
                                       : "`{}` does not end in a picture format's name";
-  return Complaint{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
+  return OptionError{fmt::format(fmt::runtime(problem), text), "valid endings: " + runtime::image_endings(true)};
 }
 
-Verdict read_frame_output(std::string_view text, Output& output) {
+OptionResult read_frame_output(std::string_view text, Output& output) {
   std::error_code ignored;
   if (!text.ends_with('/') && !std::filesystem::is_directory(text, ignored)) return read_output(text, output);
   output.path = text.ends_with('/') ? text : std::string(text) + '/';
@@ -53,11 +53,11 @@ Verdict read_frame_output(std::string_view text, Output& output) {
   return std::nullopt;
 }
 
-Verdict read_map_name(std::string_view text, std::string& path) {
+OptionResult read_map_name(std::string_view text, std::string& path) {
   path = text;
   const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
-  if ((format && format->shown) || runtime::is_float_map(path)) return std::nullopt;
-  return Complaint{fmt::format("`{}` does not end in the name of a format for maps", text),
+  if ((format && format->for_display) || runtime::is_float_map(path)) return std::nullopt;
+  return OptionError{fmt::format("`{}` does not end in the name of a format for maps", text),
                    fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
 }
 
@@ -65,17 +65,17 @@ std::string_view ending_of(const Output& output) {
   return output.film() ? kFilmEnding.substr(1) : output.format->ending;
 }
 
-void add_format_option(Arguments& arguments, bool shown_only, int& format) {
+void add_format_option(Arguments& arguments, bool display_only, int& format) {
   std::vector<std::string_view> names;  // displayable formats come first
   for (const runtime::ImageFormatInfo& known : runtime::kImageFormats) {
-    if (known.shown || !shown_only) names.push_back(known.ending);
+    if (known.for_display || !display_only) names.push_back(known.ending);
   }
-  if (!shown_only) names.push_back(kFilmEnding.substr(1));
+  if (!display_only) names.push_back(kFilmEnding.substr(1));
   arguments.option("--format", "FORMAT", fmt::format("Format of `-o -`: {} (png)", fmt::join(names, ", ")),
                    one_of(names, format));
 }
 
-std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams) {
+std::optional<ExitCode> apply_format(std::span<Output> outputs, int format, const Streams& streams) {
   const auto standard = [](const Output& output) { return output.standard(); };
   const auto streamed = std::count_if(outputs.begin(), outputs.end(), standard);
   if (streamed > 1) return fail(streams, kUsage, "`-o -` is given twice: standard output takes one picture");
@@ -131,7 +131,7 @@ Output default_output(const std::string& scene) {
   return {(stem.empty() ? "out" : stem) + ".png", &runtime::kImageFormats.front()};
 }
 
-std::string beside(const std::string& path, const std::string& suffix) {
+std::string with_suffix(const std::string& path, const std::string& suffix) {
   const std::size_t dot = path.rfind('.');
   return path.substr(0, dot) + "-" + suffix + path.substr(dot);
 }
@@ -154,7 +154,7 @@ std::optional<std::string> write_text(const std::string& text, const std::string
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
-ExitCode put_text(const std::string& text, const std::optional<std::string>& output, const Streams& streams) {
+ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output, const Streams& streams) {
   if (!output) {
     streams.out << text;
     return kDone;
@@ -164,7 +164,7 @@ ExitCode put_text(const std::string& text, const std::optional<std::string>& out
   return kDone;
 }
 
-std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
+std::optional<ExitCode> check_image_size(double width, double height, const compiler::Limits& limits,
                                            const Streams& streams) {
   const double side = std::max(width, height), pixels = width * height;
   if (side <= limits.image_side && pixels <= limits.pixels) return std::nullopt;

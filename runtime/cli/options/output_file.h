@@ -30,23 +30,23 @@ struct Output {
 };
 
 // Reads a file name with the ending of a film or of an image format, or "-". The format of "-" is PNG unless
-// put_formats() changes it. read_shown_output() accepts only formats of displayable images.
-Verdict read_output(std::string_view text, Output& output);
-Verdict read_shown_output(std::string_view text, Output& output);
-// Also accepts a folder. The format of the files in it is PNG unless put_formats() changes it.
-Verdict read_frame_output(std::string_view text, Output& output);
+// apply_format() changes it. read_display_output() accepts only formats of displayable images.
+OptionResult read_output(std::string_view text, Output& output);
+OptionResult read_display_output(std::string_view text, Output& output);
+// Also accepts a folder. The format of the files in it is PNG unless apply_format() changes it.
+OptionResult read_frame_output(std::string_view text, Output& output);
 
 // Reads a file name with the ending of an image format or of a map of numbers.
-Verdict read_map_name(std::string_view text, std::string& path);
+OptionResult read_map_name(std::string_view text, std::string& path);
 
 // Adds the option --format, the format of -o - and of folders. `format` becomes an index into the format names, -1:
 // not given.
-void add_format_option(Arguments& arguments, bool shown_only, int& format);
+void add_format_option(Arguments& arguments, bool display_only, int& format);
 
 // Sets the format that --format names in the outputs that are standard output or folders. Prints a message and
 // returns an exit code if there is no such output, if standard output is given twice, or if standard output is a
 // terminal.
-std::optional<ExitCode> put_formats(std::span<Output> outputs, int format, const Streams& streams);
+std::optional<ExitCode> apply_format(std::span<Output> outputs, int format, const Streams& streams);
 
 // Lets `fill` write the output and commits it. Returns the problem, if any.
 using Fill = std::function<std::optional<std::string>(runtime::AtomicFile& file)>;
@@ -63,7 +63,7 @@ Output default_output(const std::string& scene);
 std::string_view ending_of(const Output& output);
 
 // Inserts a suffix before the ending: "dir/ball.png", "albedo" -> "dir/ball-albedo.png".
-std::string beside(const std::string& path, const std::string& suffix);
+std::string with_suffix(const std::string& path, const std::string& suffix);
 
 // Text outputs: a regular file is replaced atomically, devices and pipes are written to directly.
 bool is_special(const std::string& path);  // true if `path` exists and is neither a regular file nor a folder
@@ -72,10 +72,10 @@ std::optional<std::string> check_text_path(const std::string& path);
 // Writes the text. Returns the problem, if any, and then the previous file is unchanged.
 [[nodiscard]] std::optional<std::string> write_text(const std::string& text, const std::string& path);
 // Writes the text to the file that -o names and says so, or to standard output without -o.
-ExitCode put_text(const std::string& text, const std::optional<std::string>& output, const Streams& streams);
+ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output, const Streams& streams);
 
 // Prints a message and returns an exit code if an image of this size exceeds the limits.
-std::optional<ExitCode> check_picture_size(double width, double height, const compiler::Limits& limits,
+std::optional<ExitCode> check_image_size(double width, double height, const compiler::Limits& limits,
                                            const Streams& streams);
 
 // Prints a message and returns an exit code if an output file is known in advance not to be writable, or if it would

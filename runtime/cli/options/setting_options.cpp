@@ -27,9 +27,9 @@ Setter setting_reader(const Setting<Record, Member>& setting, std::optional<doub
   if (setting.range.above_zero) return into(read_positive, target);
   return [range = setting.range, help = setting.option.hint, &target](std::string_view text) {
     double number = 0;
-    Verdict verdict = read_between(text, range.least, range.most, help, number);
-    if (!verdict) target = number;
-    return verdict;
+    OptionResult error = read_between(text, range.least, range.most, help, number);
+    if (!error) target = number;
+    return error;
   };
 }
 

@@ -13,7 +13,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::int64_t kMostUnit = std::int64_t{1} << 40;
+constexpr std::int64_t kMaxUnit = std::int64_t{1} << 40;
 
 // Environment variables in which queues pass a task's number, and the number of the first task.
 struct QueueVariable {
@@ -32,13 +32,13 @@ std::string variable_names() {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Verdict read_unit(std::string_view text, UnitOptions& options) {
+OptionResult read_unit(std::string_view text, UnitOptions& options) {
   options.from_queue = text == "env";
   options.unit.reset();
   if (options.from_queue) return std::nullopt;
   std::int64_t number = 0;
-  if (auto verdict = read_whole(text, 0, kMostUnit, number)) {
-    return Complaint{verdict->problem, "the first unit is 0; env takes the number from a queue's variable"};
+  if (auto error = read_whole(text, 0, kMaxUnit, number)) {
+    return OptionError{error->problem, "the first unit is 0; env takes the number from a queue's variable"};
   }
   options.unit = static_cast<std::uint64_t>(number);
   return std::nullopt;
@@ -50,8 +50,8 @@ std::variant<std::uint64_t, ExitCode> queue_number(const Streams& streams) {
     const char* text = std::getenv(row.name);
     if (text == nullptr || *text == 0 || std::string_view(text) == "undefined") continue;
     std::int64_t number = 0;
-    if (const auto verdict = read_whole(text, row.first, kMostUnit, number)) {
-      return fail(streams, kUsage, fmt::format("--unit env: {}={}: {}", row.name, text, verdict->problem));
+    if (const auto error = read_whole(text, row.first, kMaxUnit, number)) {
+      return fail(streams, kUsage, fmt::format("--unit env: {}={}: {}", row.name, text, error->problem));
     }
     return static_cast<std::uint64_t>(number - row.first);
   }
@@ -76,13 +76,13 @@ void add_unit_options(Arguments& arguments, UnitOptions& options) {
                    [&options](std::string_view text) { return read_units(text, options.ranges); });
   arguments.option("--per-task", "N", "--unit is the number of a task of N units", [&options](std::string_view text) {
     std::int64_t number = 0;
-    const Verdict verdict = read_whole(text, 1, kMostUnit, number);
-    if (!verdict) options.per_task = static_cast<std::uint64_t>(number);
-    return verdict;
+    const OptionResult error = read_whole(text, 1, kMaxUnit, number);
+    if (!error) options.per_task = static_cast<std::uint64_t>(number);
+    return error;
   });
 }
 
-std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Arguments::Given>& given,
+std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Arguments::ParsedOption>& given,
                                     const Streams& streams) {
   if (!options.plan) {
     return fail(streams, kUsage, "a unit is one of a plan, which is missing", {"name it with --plan FILE"});
@@ -93,7 +93,7 @@ std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Argu
                 {"--unit K renders one, --units K:L several"});
   }
   if (options.per_task && !one) return fail(streams, kUsage, "--per-task goes with --unit");
-  for (const Arguments::Given& option : given) {
+  for (const Arguments::ParsedOption& option : given) {
     if (std::ranges::find(kUnitNames, option.name) != kUnitNames.end()) continue;
     if (std::ranges::find(kRunning, option.name) != kRunning.end()) {
       std::ranges::copy(option.arguments(), std::back_inserter(options.running));
@@ -128,18 +128,18 @@ std::variant<std::vector<UnitRange>, ExitCode> units_of(const UnitOptions& optio
   return ranges;
 }
 
-Verdict read_units(std::string_view text, std::vector<UnitRange>& ranges) {
-  const Complaint wrong{fmt::format("`{}` are no units", text),
+OptionResult read_units(std::string_view text, std::vector<UnitRange>& ranges) {
+  const OptionError wrong{fmt::format("`{}` are no units", text),
                         "write K:L, the second not among them, or 3,7,10-19, the second among them"};
   for (std::string_view rest = text;;) {
     const std::size_t end = std::min(rest.find(','), rest.size());
     const std::string_view part = rest.substr(0, end);
     const std::size_t mark = part.find_first_of(":-");
     std::int64_t first = 0, last = 0;
-    if (read_whole(part.substr(0, mark), 0, kMostUnit, first)) return wrong;
+    if (read_whole(part.substr(0, mark), 0, kMaxUnit, first)) return wrong;
     last = first + 1;
     if (mark != part.npos) {
-      if (read_whole(part.substr(mark + 1), 0, kMostUnit, last)) return wrong;
+      if (read_whole(part.substr(mark + 1), 0, kMaxUnit, last)) return wrong;
       last += part[mark] == '-';
     }
     if (last <= first) return wrong;

@@ -33,7 +33,7 @@ void add_unit_options(Arguments& arguments, UnitOptions& options);
 
 // Takes over the other arguments in `given`. Prints a message and returns an exit code if the selected units are
 // ambiguous, or if `given` has options that the plan already defines.
-std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Arguments::Given>& given,
+std::optional<ExitCode> check_units(UnitOptions& options, const std::vector<Arguments::ParsedOption>& given,
                                     const Streams& streams);
 
 // Returns the selected units of a plan with `count` units, in the requested order. Prints a message and returns an
@@ -42,7 +42,7 @@ std::variant<std::vector<UnitRange>, ExitCode> units_of(const UnitOptions& optio
                                                         const Streams& streams);
 
 // Reads "3,7,10-19", the format of --units and of queues' array options.
-Verdict read_units(std::string_view text, std::vector<UnitRange>& ranges);
+OptionResult read_units(std::string_view text, std::vector<UnitRange>& ranges);
 std::string text_of(const UnitRange& range);
 
 }  // namespace fathom::cli

@@ -13,8 +13,8 @@
 namespace fathom::cli {
 namespace {
 
-Verdict complain(std::string problem, std::string help = "") {
-  return Complaint{std::move(problem), std::move(help)};
+OptionResult option_error(std::string problem, std::string help = "") {
+  return OptionError{std::move(problem), std::move(help)};
 }
 
 template <typename T>
@@ -36,9 +36,9 @@ template <typename Target>
 Setter whole_into(Target& target, int lo, int hi) {
   return [&target, lo, hi](std::string_view text) {
     std::int64_t value = 0;
-    Verdict verdict = read_whole(text, lo, hi, value);
-    if (!verdict) target = static_cast<int>(value);
-    return verdict;
+    OptionResult error = read_whole(text, lo, hi, value);
+    if (!error) target = static_cast<int>(value);
+    return error;
   };
 }
 
@@ -65,7 +65,7 @@ std::optional<std::vector<double>> to_numbers(std::string_view text, std::size_t
   return numbers;
 }
 
-Verdict read_aspect(std::string_view text, double& aspect) {
+OptionResult read_aspect(std::string_view text, double& aspect) {
   const std::size_t middle = text.find_first_of(":x");
   if (middle != std::string_view::npos) {
     const auto width = to_number(text.substr(0, middle)), height = to_number(text.substr(middle + 1));
@@ -74,29 +74,29 @@ Verdict read_aspect(std::string_view text, double& aspect) {
       return std::nullopt;
     }
   }
-  return complain(fmt::format("`{}` is not a ratio of two positive numbers", text), "write it as 16:9 or 4x3");
+  return option_error(fmt::format("`{}` is not a ratio of two positive numbers", text), "write it as 16:9 or 4x3");
 }
 
-Verdict read_angle(std::string_view text, double& radians) {
+OptionResult read_angle(std::string_view text, double& radians) {
   std::string_view digits = text;
   const bool degrees = cut_suffix(digits, "deg");
   const bool unit = degrees || cut_suffix(digits, "rad");
   const auto number = to_number(digits);
-  if (!number) return complain(fmt::format("`{}` is not an angle", text), "write 0.785 (radians), 0.785rad or 45deg");
+  if (!number) return option_error(fmt::format("`{}` is not an angle", text), "write 0.785 (radians), 0.785rad or 45deg");
   const double angle = degrees ? *number * std::numbers::pi / 180 : *number;
   if (!unit && angle > std::numbers::pi && *number < 180) {
-    return complain(fmt::format("{} radians is more than half a turn", text),
+    return option_error(fmt::format("{} radians is more than half a turn", text),
                     fmt::format("a number without a unit is in radians; did you mean `{}deg`?", text));
   }
   if (angle <= 0 || angle >= std::numbers::pi) {
-    return complain(fmt::format("`{}` is not between 0 and 180 degrees", text),
+    return option_error(fmt::format("`{}` is not between 0 and 180 degrees", text),
                     unit ? "" : "a number without a unit is in radians; write for example 45deg");
   }
   radians = angle;
   return std::nullopt;
 }
 
-Verdict read_size(std::string_view text, PixelSize& size) {
+OptionResult read_size(std::string_view text, PixelSize& size) {
   const std::size_t middle = text.find('x');
   if (middle != std::string_view::npos) {
     const auto width = to<int>(text.substr(0, middle)), height = to<int>(text.substr(middle + 1));
@@ -106,24 +106,24 @@ Verdict read_size(std::string_view text, PixelSize& size) {
       return std::nullopt;
     }
   }
-  return complain(fmt::format("`{}` is not a size in pixels, each side from 1 to {}", text, compiler::kMaxSide),
+  return option_error(fmt::format("`{}` is not a size in pixels, each side from 1 to {}", text, compiler::kMaxSide),
                   "write it as 1920x1080");
 }
 
-Verdict read_point(std::string_view text, glm::dvec3& point) {
+OptionResult read_point(std::string_view text, glm::dvec3& point) {
   const auto numbers = to_numbers(text, 3, false);
-  if (!numbers) return complain(fmt::format("`{}` is not a point", text), "write three numbers: 0,1.5,-2");
+  if (!numbers) return option_error(fmt::format("`{}` is not a point", text), "write three numbers: 0,1.5,-2");
   point = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
   return std::nullopt;
 }
 
-Verdict read_box(std::string_view text, PointBox& box) {
+OptionResult read_box(std::string_view text, PointBox& box) {
   const auto n = to_numbers(text, 6, false);
-  if (!n) return complain(fmt::format("`{}` is not a box", text), "write its two corners: -1,-1,-1,1,1,1");
+  if (!n) return option_error(fmt::format("`{}` is not a box", text), "write its two corners: -1,-1,-1,1,1,1");
   const PointBox read = {{(*n)[0], (*n)[1], (*n)[2]}, {(*n)[3], (*n)[4], (*n)[5]}};
   for (int axis = 0; axis < 3; ++axis) {
     if (read.lo[axis] > read.hi[axis]) {
-      return complain(fmt::format("`{}`: the first corner's {} is above the second's", text, "xyz"[axis]),
+      return option_error(fmt::format("`{}`: the first corner's {} is above the second's", text, "xyz"[axis]),
                       "give the corner with the smaller coordinates first");
     }
   }
@@ -131,19 +131,19 @@ Verdict read_box(std::string_view text, PointBox& box) {
   return std::nullopt;
 }
 
-Verdict read_rectangle(std::string_view text, Rectangle& rectangle) {
+OptionResult read_rectangle(std::string_view text, Rectangle& rectangle) {
   const auto n = to_numbers(text, 4, false);
   if (!n || !((*n)[0] < (*n)[2]) || !((*n)[1] < (*n)[3])) {
-    return complain(fmt::format("`{}` is not a rectangle", text),
+    return option_error(fmt::format("`{}` is not a rectangle", text),
                     n ? "give the corner with the smaller coordinates first" : "write its two corners: -1,-1,1,1");
   }
   rectangle = {{(*n)[0], (*n)[1]}, {(*n)[2], (*n)[3]}};
   return std::nullopt;
 }
 
-Verdict read_crop(std::string_view text, CropSides& crop) {
+OptionResult read_crop(std::string_view text, CropSides& crop) {
   const auto wrong = [&] {
-    return complain(fmt::format("`{}` is not a part of a picture", text),
+    return option_error(fmt::format("`{}` is not a part of a picture", text),
                     "write its two corners in pixels or percent: 0,0,640,360 or 25%,25%,75%,75%");
   };
   CropSides read;
@@ -163,7 +163,7 @@ Verdict read_crop(std::string_view text, CropSides& crop) {
   return std::nullopt;
 }
 
-Verdict read_duration(std::string_view text, double& seconds) {
+OptionResult read_duration(std::string_view text, double& seconds) {
   std::string_view digits = text;
   double unit = 1;
   if (cut_suffix(digits, "h")) {
@@ -175,51 +175,51 @@ Verdict read_duration(std::string_view text, double& seconds) {
   }
   const auto number = to_number(digits);
   if (!number || *number <= 0 || !std::isfinite(*number * unit)) {
-    return complain(fmt::format("`{}` is not a time", text), "write 90s, 10m or 1.5h; a number alone is seconds");
+    return option_error(fmt::format("`{}` is not a time", text), "write 90s, 10m or 1.5h; a number alone is seconds");
   }
   seconds = *number * unit;
   return std::nullopt;
 }
 
-Verdict read_exposure(std::string_view text, double& stops) {
+OptionResult read_exposure(std::string_view text, double& stops) {
   return read_between(text, -compiler::kMaxExposure, compiler::kMaxExposure, "", stops);
 }
 
-Verdict read_finite(std::string_view text, double& number) {
+OptionResult read_finite(std::string_view text, double& number) {
   const auto value = to_number(text);
-  if (!value) return complain(fmt::format("`{}` is not a number", text));
+  if (!value) return option_error(fmt::format("`{}` is not a number", text));
   number = *value;
   return std::nullopt;
 }
 
-Verdict read_positive(std::string_view text, double& number) {
+OptionResult read_positive(std::string_view text, double& number) {
   const auto value = to_number(text);
-  if (!value || *value <= 0) return complain(fmt::format("`{}` is not a positive number", text));
+  if (!value || *value <= 0) return option_error(fmt::format("`{}` is not a positive number", text));
   number = *value;
   return std::nullopt;
 }
 
-Verdict read_between(std::string_view text, double least, double most, std::string_view help, double& number) {
+OptionResult read_between(std::string_view text, double least, double most, std::string_view help, double& number) {
   const auto value = to_number(text);
   if (!value || *value < least || *value > most) {
-    return complain(fmt::format("`{}` is not a number from {} to {}", text, least, most), std::string(help));
+    return option_error(fmt::format("`{}` is not a number from {} to {}", text, least, most), std::string(help));
   }
   number = *value;
   return std::nullopt;
 }
 
-Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number) {
+OptionResult read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number) {
   const auto value = to<std::int64_t>(text);
   if (!value || *value < lo || *value > hi) {
-    return complain(fmt::format("`{}` is not a whole number from {} to {}", text, lo, hi));
+    return option_error(fmt::format("`{}` is not a whole number from {} to {}", text, lo, hi));
   }
   number = *value;
   return std::nullopt;
 }
 
-Verdict read_seed(std::string_view text, std::uint64_t& seed) {
+OptionResult read_seed(std::string_view text, std::uint64_t& seed) {
   const auto value = to<std::uint64_t>(text);
-  if (!value) return complain(fmt::format("`{}` is not a whole number from 0 to 2^64 - 1", text));
+  if (!value) return option_error(fmt::format("`{}` is not a whole number from 0 to 2^64 - 1", text));
   seed = *value;
   return std::nullopt;
 }
@@ -229,14 +229,14 @@ Setter whole(int& target, int lo, int hi) { return whole_into(target, lo, hi); }
 
 Setter one_of(std::vector<std::string_view> words, std::function<void(int)> take) {
   std::vector<std::string> all(words.begin(), words.end());
-  const auto set = [words = std::move(words), take = std::move(take)](std::string_view text) -> Verdict {
+  const auto set = [words = std::move(words), take = std::move(take)](std::string_view text) -> OptionResult {
     const auto found = std::find(words.begin(), words.end(), text);
     if (found != words.end()) {
       take(static_cast<int>(found - words.begin()));
       return std::nullopt;
     }
     const std::string_view near = compiler::nearest(text, words);
-    return complain(fmt::format("`{}` is not one of {}", text, fmt::join(words, ", ")),
+    return option_error(fmt::format("`{}` is not one of {}", text, fmt::join(words, ", ")),
                     near.empty() ? "" : fmt::format("did you mean `{}`?", near));
   };
   return {set, std::move(all)};
@@ -247,7 +247,7 @@ Setter one_of(std::vector<std::string_view> words, int& target) {
 }
 
 Setter any_text(std::optional<std::string>& target) {
-  return [&target](std::string_view text) -> Verdict {
+  return [&target](std::string_view text) -> OptionResult {
     target = text;
     return std::nullopt;
   };

@@ -19,11 +19,11 @@
 
 namespace fathom::cli {
 
-struct Complaint {
+struct OptionError {
   std::string problem;
   std::string help;  // may be empty
 };
-using Verdict = std::optional<Complaint>;
+using OptionResult = std::optional<OptionError>;
 
 class Setter {
  public:
@@ -31,12 +31,12 @@ class Setter {
   requires(!std::is_same_v<std::remove_cvref_t<F>, Setter>) Setter(F set, std::vector<std::string> words = {})
       : set_(std::move(set)), words_(std::move(words)) {}
 
-  Verdict operator()(std::string_view text) const { return set_(text); }
+  OptionResult operator()(std::string_view text) const { return set_(text); }
   // The valid values. Empty: not restricted to a list.
   const std::vector<std::string>& words() const { return words_; }
 
  private:
-  std::function<Verdict(std::string_view text)> set_;
+  std::function<OptionResult(std::string_view text)> set_;
   std::vector<std::string> words_;
 };
 
@@ -66,39 +66,39 @@ std::optional<double> to_number(std::string_view text);
 std::optional<std::vector<double>> to_numbers(std::string_view text, std::size_t count, bool blanks);
 
 // Reads width over height from "16:9", "4x3" or "2.35:1".
-Verdict read_aspect(std::string_view text, double& aspect);
+OptionResult read_aspect(std::string_view text, double& aspect);
 
 // Reads an angle in (0, pi) radians from "0.785", "0.785rad" or "45deg". A bare number above pi is surely meant in
 // degrees, so the error explains how to write degrees.
-Verdict read_angle(std::string_view text, double& radians);
+OptionResult read_angle(std::string_view text, double& radians);
 
 // Reads "1920x1080".
-Verdict read_size(std::string_view text, PixelSize& size);
+OptionResult read_size(std::string_view text, PixelSize& size);
 
 // Reads "1,2,3".
-Verdict read_point(std::string_view text, glm::dvec3& point);
+OptionResult read_point(std::string_view text, glm::dvec3& point);
 
 // Reads two opposite corners, "x0,y0,z0,x1,y1,z1", the smaller coordinates first.
-Verdict read_box(std::string_view text, PointBox& box);
+OptionResult read_box(std::string_view text, PointBox& box);
 
 // Reads two opposite corners, "x0,y0,x1,y1", the smaller coordinates first. The corners differ in both coordinates.
-Verdict read_rectangle(std::string_view text, Rectangle& rectangle);
+OptionResult read_rectangle(std::string_view text, Rectangle& rectangle);
 
 // Reads two opposite corners in whole pixels or percent: "0,0,640,360", "25%,25%,75%,75%".
-Verdict read_crop(std::string_view text, CropSides& crop);
+OptionResult read_crop(std::string_view text, CropSides& crop);
 
 // Reads a positive duration in seconds from "90", "90s", "10m" or "1.5h".
-Verdict read_duration(std::string_view text, double& seconds);
+OptionResult read_duration(std::string_view text, double& seconds);
 
-// Reads an exposure in stops, at most kMaxExposure in magnitude.
-Verdict read_exposure(std::string_view text, double& stops);
+// Reads an exposure in stops, at most kMaxExposure in cancellation.
+OptionResult read_exposure(std::string_view text, double& stops);
 
-Verdict read_finite(std::string_view text, double& number);
-Verdict read_positive(std::string_view text, double& number);
+OptionResult read_finite(std::string_view text, double& number);
+OptionResult read_positive(std::string_view text, double& number);
 // Reads a number in [least, most]. `help` may be empty.
-Verdict read_between(std::string_view text, double least, double most, std::string_view help, double& number);
-Verdict read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
-Verdict read_seed(std::string_view text, std::uint64_t& seed);
+OptionResult read_between(std::string_view text, double least, double most, std::string_view help, double& number);
+OptionResult read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
+OptionResult read_seed(std::string_view text, std::uint64_t& seed);
 
 // Makes a Setter for a whole number in [lo, hi].
 Setter whole(std::optional<int>& target, int lo, int hi = std::numeric_limits<int>::max());
@@ -117,21 +117,21 @@ Setter any_text(std::optional<std::string>& target);
 
 // Adapts a reader with a plain target to an optional or a list of values.
 template <typename T>
-Setter into(Verdict (*read)(std::string_view, T&), std::optional<T>& target) {
+Setter into(OptionResult (*read)(std::string_view, T&), std::optional<T>& target) {
   return [read, &target](std::string_view text) {
     T value{};
-    Verdict verdict = read(text, value);
-    if (!verdict) target = value;
-    return verdict;
+    OptionResult error = read(text, value);
+    if (!error) target = value;
+    return error;
   };
 }
 template <typename T>
-Setter append_to(Verdict (*read)(std::string_view, T&), std::vector<T>& target) {
+Setter append_to(OptionResult (*read)(std::string_view, T&), std::vector<T>& target) {
   return [read, &target](std::string_view text) {
     T value{};
-    Verdict verdict = read(text, value);
-    if (!verdict) target.push_back(value);
-    return verdict;
+    OptionResult error = read(text, value);
+    if (!error) target.push_back(value);
+    return error;
   };
 }
 

@@ -13,7 +13,7 @@ namespace fathom::cli {
 namespace {
 
 // Maximum fraction of the time spent on writing, because threads that finish a unit wait for the write.
-constexpr double kMostShare = 0.05;
+constexpr double kMaxShare = 0.05;
 
 std::string text_of(runtime::PixelRect area) {
   return fmt::format("{},{},{},{}", area.x0, area.y0, area.x1, area.y1);
@@ -53,9 +53,9 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, co
     return std::nullopt;
   }
   auto read = runtime::read_film(path_, limits_);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
-    return fail(streams, unread->missing ? kIo : kBadScene, unread->problem,
-                {unread->foreign ? kElsewhere : remedy()});
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) {
+    return fail(streams, read_error->missing ? kIo : kBadScene, read_error->problem,
+                {read_error->not_a_film ? kElsewhere : remedy()});
   }
   auto& file = std::get<runtime::FilmFile>(read);
   std::vector<std::string> problems = differences(file, header, settings);
@@ -71,16 +71,16 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, co
     return fail(streams, kBadScene, fmt::format(kNoSense, path_), {remedy()});
   }
   options.resume_from = std::make_shared<runtime::PartialRender>(std::move(file.render));
-  ours_ = true;
+  is_own_ = true;
   return std::nullopt;
 }
 
-std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& header, const runtime::Settings& settings,
+std::optional<ExitCode> Checkpoint::start_new(const runtime::FilmHeader& header, const runtime::Settings& settings,
                                                  const Streams& streams) {
   known_ = runtime::stamp_of(path_);
   if (!known_) return std::nullopt;
   const auto head = runtime::read_film_header(path_, limits_);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&head)) return refuse_to_replace(*unread, streams);
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&head)) return check_replaceable(*read_error, streams);
   std::vector<std::string> problems = differences(std::get<runtime::FilmFile>(head), header, settings);
   if (!problems.empty()) {
     if (named_) {
@@ -91,10 +91,10 @@ std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& head
     return std::nullopt;
   }
   const auto whole = runtime::read_film(path_, limits_);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&whole)) return refuse_to_replace(*unread, streams);
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&whole)) return check_replaceable(*read_error, streams);
   const runtime::PartialRender& there = std::get<runtime::FilmFile>(whole).render;
   if (!runtime::can_resume(there, settings)) {
-    return refuse_to_replace({fmt::format(kNoSense, path_), false, false}, streams);
+    return check_replaceable({fmt::format(kNoSense, path_), false, false}, streams);
   }
   const double samples = static_cast<double>(there.film.samples()) / static_cast<double>(there.film.area().pixels());
   return fail(
@@ -105,12 +105,12 @@ std::optional<ExitCode> Checkpoint::begin_afresh(const runtime::FilmHeader& head
 
 // Decides about a file that cannot be resumed. If the name was not given by the user, a damaged film may be replaced.
 // A file that was never a film is not ours and stays.
-std::optional<ExitCode> Checkpoint::refuse_to_replace(const runtime::UnreadFilm& unread,
+std::optional<ExitCode> Checkpoint::check_replaceable(const runtime::FilmReadError& read_error,
                                                       const Streams& streams) const {
-  if (unread.missing) return fail(streams, kIo, unread.problem, {remedy()});
-  if (unread.foreign) return fail(streams, kBadScene, unread.problem, {kElsewhere});
-  if (named_) return fail(streams, kBadScene, unread.problem, {remedy()});
-  note(streams, unread.problem + "; it will be replaced by this render's checkpoint");
+  if (read_error.missing) return fail(streams, kIo, read_error.problem, {remedy()});
+  if (read_error.not_a_film) return fail(streams, kBadScene, read_error.problem, {kElsewhere});
+  if (named_) return fail(streams, kBadScene, read_error.problem, {remedy()});
+  note(streams, read_error.problem + "; it will be replaced by this render's checkpoint");
   return std::nullopt;
 }
 
@@ -121,7 +121,7 @@ std::optional<ExitCode> Checkpoint::check_path(const Streams& streams) const {
   return std::nullopt;
 }
 
-void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOptions::Look& look, double seconds,
+void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOptions::SnapshotReader& snapshot, double seconds,
                       const Streams& streams) {
   if (due_ == 0) due_ = seconds + interval_;
   if (seconds < due_) return;
@@ -129,11 +129,11 @@ void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOp
   const Clock::time_point start = Clock::now();
   save(
       [&](runtime::AtomicFile& file) {
-        look([&](const runtime::PartialRender& render) { runtime::write_film(header, render, file); });
+        snapshot([&](const runtime::PartialRender& render) { runtime::write_film(header, render, file); });
       },
       streams);
   const double took = std::chrono::duration<double>(Clock::now() - start).count();
-  due_ = seconds + took + std::max(interval_, took / kMostShare);
+  due_ = seconds + took + std::max(interval_, took / kMaxShare);
 }
 
 bool Checkpoint::write(const runtime::FilmHeader& header, const runtime::PartialRender& render,
@@ -153,7 +153,7 @@ bool Checkpoint::save(const std::function<void(runtime::AtomicFile&)>& fill, con
   if (another) problem_ = problem_of_another();
   if (!problem_) {
     known_ = file.stamp();
-    ours_ = true;
+    is_own_ = true;
     ++written_;
   } else if (!warned_) {
     warned_ = true;
@@ -178,14 +178,14 @@ std::string Checkpoint::problem_of_another() const {
 
 void Checkpoint::remove(const Streams& streams) {
   std::error_code ignored;
-  if (ours_ && replaced_by_another()) {
+  if (is_own_ && replaced_by_another()) {
     warn(streams, problem_of_another());
-  } else if (ours_) {
+  } else if (is_own_) {
     const auto target = std::filesystem::canonical(path_, ignored);
     if (!ignored) std::filesystem::remove(target, ignored);
     std::filesystem::remove(path_, ignored);  // if path_ was a link
   }
-  ours_ = false;
+  is_own_ = false;
 }
 
 }  // namespace fathom::cli

@@ -37,13 +37,13 @@ class Checkpoint {
                                  runtime::RenderOptions& options, const Streams& streams, bool one_of_many = false);
   // For a render without --resume. Prints a message and returns an exit code if the existing file could be resumed or
   // is not a film, or if its name was given on the command line. Prints a note if the file will be replaced.
-  std::optional<ExitCode> begin_afresh(const runtime::FilmHeader& header, const runtime::Settings& settings,
+  std::optional<ExitCode> start_new(const runtime::FilmHeader& header, const runtime::Settings& settings,
                                        const Streams& streams);
   // Prints a message and returns an exit code if the path is known in advance not to be writable.
   std::optional<ExitCode> check_path(const Streams& streams) const;
 
   // Writes the checkpoint if the interval is over. To be called often during the render.
-  void tick(const runtime::FilmHeader& header, const runtime::RenderOptions::Look& look, double seconds,
+  void tick(const runtime::FilmHeader& header, const runtime::RenderOptions::SnapshotReader& snapshot, double seconds,
             const Streams& streams);
   // Writes the checkpoint now. Returns false, after a warning, if the write fails.
   bool write(const runtime::FilmHeader& header, const runtime::PartialRender& render, const Streams& streams);
@@ -52,13 +52,13 @@ class Checkpoint {
   const std::string& path() const { return path_; }
   bool named() const { return named_; }
   // True if the file is still the state of this render that this run read or wrote.
-  bool holds_state() const { return ours_ && runtime::stamp_of(path_) == known_; }
+  bool holds_state() const { return is_own_ && runtime::stamp_of(path_) == known_; }
   // Problem of the last write, if any.
   const std::optional<std::string>& problem() const { return problem_; }
   int written() const { return written_; }
 
  private:
-  std::optional<ExitCode> refuse_to_replace(const runtime::UnreadFilm& unread, const Streams& streams) const;
+  std::optional<ExitCode> check_replaceable(const runtime::FilmReadError& read_error, const Streams& streams) const;
   bool replaced_by_another() const;
   std::string problem_of_another() const;
   bool save(const std::function<void(runtime::AtomicFile&)>& fill, const Streams& streams);
@@ -70,7 +70,7 @@ class Checkpoint {
   const runtime::ReadLimits limits_;         // for reading an existing file
   double due_ = 0;                           // seconds since the render began; 0: not set yet
   std::optional<runtime::FileStamp> known_;  // the file as this run found it or wrote it
-  bool ours_ = false;                        // the known file is a state of this render
+  bool is_own_ = false;                        // the known file is a state of this render
   bool warned_ = false;
   std::optional<std::string> problem_;
   int written_ = 0;

@@ -42,14 +42,14 @@ std::string describe_values(const std::vector<float>& values, const Map& map) {
 
 std::vector<std::string> cost_map_files(const std::string& path) {
   std::vector<std::string> files;
-  for (const Map& map : kMaps) files.push_back(beside(path, map.name));
+  for (const Map& map : kMaps) files.push_back(with_suffix(path, map.name));
   return files;
 }
 
 std::optional<std::string> write_cost_maps(const std::string& path, const runtime::Film& film,
                                            std::vector<std::string>& lines) {
   for (const Map& map : kMaps) {
-    const std::string file = beside(path, map.name);
+    const std::string file = with_suffix(path, map.name);
     const std::vector<float> values = values_of(film, map);
     int height = film.height();
     std::string meaning = describe_values(values, map);
@@ -58,7 +58,7 @@ std::optional<std::string> write_cost_maps(const std::string& path, const runtim
       problem = runtime::write_float_map(values, film.width(), film.height(), file);
     } else {
       const runtime::ColorScale scale = runtime::scale_for(values, true);
-      const runtime::Picture picture = runtime::draw_map(values, film.width(), film.height(), scale);
+      const runtime::ByteImage picture = runtime::draw_map(values, film.width(), film.height(), scale);
       problem = runtime::write_image(picture, file);
       height = picture.height;
       meaning += fmt::format("; dark violet is {:.6g}, yellow {:.6g}, logarithmic, black none", scale.lo, scale.hi);

@@ -37,6 +37,6 @@ Interruption::~Interruption() {
 
 const std::atomic<bool>& Interruption::stop() const { return stop_asked; }
 
-bool Interruption::picture_wanted() { return picture_asked.exchange(false); }
+bool Interruption::image_requested() { return picture_asked.exchange(false); }
 
 }  // namespace fathom::cli

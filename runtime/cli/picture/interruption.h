@@ -22,7 +22,7 @@ class Interruption {
   // Becomes true with the first signal that asks the render to stop.
   const std::atomic<bool>& stop() const;
   // True if SIGUSR1 has arrived since the last call.
-  bool picture_wanted();
+  bool image_requested();
 
  private:
   static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};

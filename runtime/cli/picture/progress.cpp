@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRedrawSeconds = 0.1;  // minimum interval on a terminal
 // For logs: a line for every tenth of the work or every ten seconds, but at most one per second.
-constexpr double kLineFraction = 0.1, kLineSeconds = 10, kLeastSeconds = 1;
+constexpr double kLineFraction = 0.1, kLineSeconds = 10, kMinSeconds = 1;
 constexpr double kTrustedSeconds = 0.5;  // before this, an estimate of the remaining time is noise
 
 std::string describe(const runtime::Progress& progress) {
@@ -32,9 +32,9 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-ProgressLine::~ProgressLine() { wipe(); }
+ProgressLine::~ProgressLine() { erase(); }
 
-void ProgressLine::wipe() {
+void ProgressLine::erase() {
   if (drawn_ && streams_.terminal) streams_.err << "\r\033[K" << std::flush;
   drawn_ = false;
 }
@@ -43,7 +43,7 @@ bool ProgressLine::due(const runtime::Progress& progress) const {
   const double since = progress.seconds - last_seconds_;
   if (streams_.terminal) return since >= kRedrawSeconds;
   if (progress.fraction >= 1) return false;
-  return since >= kLineSeconds || (since >= kLeastSeconds && progress.fraction - last_fraction_ >= kLineFraction);
+  return since >= kLineSeconds || (since >= kMinSeconds && progress.fraction - last_fraction_ >= kLineFraction);
 }
 
 void ProgressLine::update(const runtime::Progress& progress) {

@@ -24,7 +24,7 @@ class ProgressLine {
   ~ProgressLine();  // erases the line
 
   void update(const runtime::Progress& progress);
-  void wipe();  // erases the line on a terminal
+  void erase();  // erases the line on a terminal
 
  private:
   bool due(const runtime::Progress& progress) const;

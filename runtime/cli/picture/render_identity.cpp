@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "runtime/cli/options/version.h"
-#include "runtime/cli/picture/picture_attributes.h"
+#include "runtime/cli/picture/image_attributes.h"
 #include "runtime/cli/picture/scene_hash.h"
 #include "vm/encoding/bytes.h"
 #include "vm/encoding/digest.h"
@@ -127,7 +127,7 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
 runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                 const runtime::RenderOptions& options) {
   return {render_identity(scene, settings, options),
-          picture_attributes(scene, settings),
+          image_attributes(scene, settings),
           settings.width,
           settings.height,
           settings.samples,

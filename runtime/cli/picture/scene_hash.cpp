@@ -10,7 +10,7 @@ namespace {
 void absorb(const vm::VerifiedProgram& program, vm::ByteWriter& bytes) {
   bytes.u64(program.program().words.size());
   for (const std::uint32_t word : program.program().words) bytes.u32(word);
-  for (const double wide : program.program().wide) bytes.f64(wide);
+  for (const double doubles : program.program().doubles) bytes.f64(doubles);
 }
 
 void absorb(const compiler::CompiledField& field, vm::ByteWriter& bytes) {

@@ -6,11 +6,11 @@
 namespace fathom::cli {
 namespace {
 
-constexpr double kUnitSeconds = 120, kLeastUnitSeconds = 60, kMostUnitSeconds = 300;
+constexpr double kUnitSeconds = 120, kMinUnitSeconds = 60, kMaxUnitSeconds = 300;
 // So many that the machines wait only a small part of the time for the last unit.
 constexpr double kUnitsPerMachine = 30;
 constexpr double kStartsPerSecond = 200;  // units that a queue can start per second
-constexpr int kLeastTile = 64;            // pixels per side
+constexpr int kMinTile = 64;            // pixels per side
 
 int edge(int length, int parts, int at) { return static_cast<int>(static_cast<std::int64_t>(length) * at / parts); }
 
@@ -18,7 +18,7 @@ int edge(int length, int parts, int at) { return static_cast<int>(static_cast<st
 
 bool too_many_units(const PlanGrid& grid) {
   const double blocks = std::ceil(static_cast<double>(grid.spp) / std::max(grid.block, 1u));
-  return static_cast<double>(grid.frame_count()) * grid.columns * grid.rows * blocks > kMostUnits;
+  return static_cast<double>(grid.frame_count()) * grid.columns * grid.rows * blocks > kMaxUnits;
 }
 
 PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number) {
@@ -32,20 +32,20 @@ PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number) {
           {first, std::min(first + grid.block, grid.spp)}};
 }
 
-double usual_unit_seconds(double all_seconds, std::optional<int> machines) {
+double default_unit_seconds(double all_seconds, std::optional<int> machines) {
   if (!machines) return kUnitSeconds;
   const double each = all_seconds / *machines / kUnitsPerMachine;
-  return std::max(std::clamp(each, kLeastUnitSeconds, kMostUnitSeconds), *machines / kStartsPerSecond);
+  return std::max(std::clamp(each, kMinUnitSeconds, kMaxUnitSeconds), *machines / kStartsPerSecond);
 }
 
 void cut(PlanGrid& grid, bool tiles_given, double frame_seconds, double unit_seconds) {
   const double wanted = std::max(1.0, frame_seconds / unit_seconds);
   if (!tiles_given) {
-    const double most_columns = std::max(1, grid.width / kLeastTile),
-                 most_rows = std::max(1, grid.height / kLeastTile);
+    const double max_columns = std::max(1, grid.width / kMinTile),
+                 max_rows = std::max(1, grid.height / kMinTile);
     grid.columns =
-        static_cast<int>(std::clamp(std::round(std::sqrt(wanted * grid.width / grid.height)), 1.0, most_columns));
-    grid.rows = static_cast<int>(std::clamp(std::round(wanted / grid.columns), 1.0, most_rows));
+        static_cast<int>(std::clamp(std::round(std::sqrt(wanted * grid.width / grid.height)), 1.0, max_columns));
+    grid.rows = static_cast<int>(std::clamp(std::round(wanted / grid.columns), 1.0, max_rows));
   }
   const double blocks = std::round(wanted / grid.columns / grid.rows);
   grid.block =

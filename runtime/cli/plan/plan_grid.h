@@ -25,7 +25,7 @@ struct PlanGrid {
   std::uint64_t units() const { return frame_count() * units_of_frame(); }
 };
 
-constexpr double kMostUnits = 1e9;
+constexpr double kMaxUnits = 1e9;
 bool too_many_units(const PlanGrid& grid);  // computes in double: the number may exceed 64 bits
 
 struct PlanUnit {
@@ -42,7 +42,7 @@ PlanUnit unit_of(const PlanGrid& grid, std::uint64_t number);
 // `machines` the duration is two minutes. Otherwise the duration is a thirtieth of a machine's share, clamped to one
 // to five minutes, but no less than a queue needs to start one unit per machine. Source: bench/farm.cpp, which
 // compares other values.
-double usual_unit_seconds(double all_seconds, std::optional<int> machines);
+double default_unit_seconds(double all_seconds, std::optional<int> machines);
 // Cuts the grid such that a unit takes about `unit_seconds`. Unless `tiles_given`, tiles are cut first, down to 64
 // pixels per side, because tiles do not add to the written data. Blocks of samples are cut next, because each block
 // is written as a film of its own.

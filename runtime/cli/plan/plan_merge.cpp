@@ -11,7 +11,7 @@
 
 namespace fathom::cli {
 
-void put_tone(const MergeRequest& request, runtime::Attributes& attributes) {
+void override_tone(const MergeRequest& request, runtime::Attributes& attributes) {
   if (request.exposure) attributes["fathom.exposure"] = static_cast<float>(*request.exposure);
   if (request.tone >= 0) {
     attributes["fathom.tone"] = std::string(compiler::kToneCurves[static_cast<std::size_t>(request.tone)]);
@@ -84,8 +84,8 @@ class PlanMerge {
   std::variant<runtime::FilmFile, ExitCode> read(std::uint64_t number, const runtime::FilmFile* first) const {
     const std::string file = unit_file(folder_, number);
     auto read = runtime::read_film(file, read_limits(request_.limits));
-    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
-      return fail(streams_, unread->missing ? kIo : kBadScene, unread->problem,
+    if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) {
+      return fail(streams_, read_error->missing ? kIo : kBadScene, read_error->problem,
                   {fmt::format("render it again: fathom render --plan {} --unit {}", *request_.plan, number)});
     }
     auto& film = std::get<runtime::FilmFile>(read);
@@ -123,18 +123,18 @@ class PlanMerge {
   }
 
   void add(runtime::PartialRender& sum, const runtime::FilmFile& unit) const {
-    if (!sum.film.merge(unit.render.film)) warn(streams_, lost_text("samples of a unit"));
+    if (!sum.film.merge(unit.render.film)) warn(streams_, overflow_text("samples of a unit"));
   }
 
   std::optional<ExitCode> check_memory(const runtime::FilmShape& shape) const {
     const auto film = static_cast<double>(runtime::Film::memory_per_pixel(shape.layers, shape.stages));
-    const double each = film + kPictureBytes + (denoise_ ? kDenoiserBytes : 0);
+    const double each = film + kImageBytes + (denoise_ ? kDenoiserBytes : 0);
     const double needed =
         each * plan_.grid.width * plan_.grid.height + film * static_cast<double>(shape.area.pixels());
     const double allowed = allowed_memory(request_.limits);
     if (needed <= allowed) return std::nullopt;
     return fail(streams_, kBadScene,
-                fmt::format("a frame would take {} of memory; {} are allowed", in_words(needed), in_words(allowed)),
+                fmt::format("a frame would take {} of memory; {} are allowed", format_bytes(needed), format_bytes(allowed)),
                 {compiler::raise(&compiler::Limits::memory, needed)});
   }
 
@@ -142,15 +142,15 @@ class PlanMerge {
     if (denoise_ && (!sum.film.layers().first_hit || !sum.film.layers().halves)) {
       return fail(streams_, kBadScene, "--denoise: the films lack what it takes", {"plan with --denoise, too"});
     }
-    put_tone(request_, header.attributes);
+    override_tone(request_, header.attributes);
     if (denoise_) runtime::denoise(sum.film, 0);
-    PictureFiles pictures = request_.pictures;
+    ImageFiles pictures = request_.pictures;
     pictures.noisy = denoise_;
     for (Output& output : pictures.outputs) {
       if (plan_.grid.frames && !output.standard()) output.path = numbered(output.path, plan_.grid.frames->at(index));
     }
     std::vector<std::string> lines;
-    const auto problem = write_pictures(pictures, header, sum, std::nullopt, lines, streams_);
+    const auto problem = write_image_files(pictures, header, sum, std::nullopt, lines, streams_);
     for (const std::string& line : lines) {
       if (!request_.quiet) streams_.err << line << '\n';
     }

@@ -8,7 +8,7 @@
 
 #include "compiler/source/limits.h"
 #include "runtime/cli/options/frame_options.h"
-#include "runtime/cli/picture/picture_files.h"
+#include "runtime/cli/picture/image_files.h"
 
 namespace fathom::cli {
 
@@ -16,17 +16,17 @@ struct MergeRequest {
   std::vector<std::string> inputs;
   std::optional<std::string> plan;  // replaces `inputs`
   FrameOptions frames;              // frames of the plan to merge; default: all
-  PictureFiles pictures;
+  ImageFiles pictures;
   std::optional<double> exposure;
   int tone = -1;  // a compiler::ToneCurve; -1: not given
   int bits = 0;   // an index into 8, 16
   bool denoise = false, quiet = false;
-  int format = -1;  // format of -o -, see put_formats()
+  int format = -1;  // format of -o -, see apply_format()
   compiler::Limits limits;
 };
 
 // Overrides the exposure and tone curve of the films with those of the request.
-void put_tone(const MergeRequest& request, runtime::Attributes& attributes);
+void override_tone(const MergeRequest& request, runtime::Attributes& attributes);
 
 ExitCode merge_plan(const MergeRequest& request, const Streams& streams);
 

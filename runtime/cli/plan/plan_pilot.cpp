@@ -10,7 +10,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 }  // namespace
 
-std::optional<ExitCode> Pilot::run(PlannedPictures& pictures, const PlanGrid& grid, const Streams&) {
+std::optional<ExitCode> Pilot::run(PlanFrames& pictures, const PlanGrid& grid, const Streams&) {
   const double begin = now();
   const auto last = static_cast<int>(grid.frame_count()) - 1;
   std::vector<int> frames = {0, last / 2, last};
@@ -20,7 +20,7 @@ std::optional<ExitCode> Pilot::run(PlannedPictures& pictures, const PlanGrid& gr
     const auto found = pictures.at(frame);
     if (const auto* code = std::get_if<ExitCode>(&found)) return *code;
     start_ += (now() - before) / static_cast<double>(frames.size());
-    const Picture& picture = *std::get<Picture*>(found);
+    const PreparedRender& picture = *std::get<PreparedRender*>(found);
     costs_.emplace_back(picture.scene, picture.request.options, grid.width, grid.height, grid.spp);
   }
   seconds_ = now() - begin;

@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "runtime/cli/plan/pixel_costs.h"
-#include "runtime/cli/plan/planned_picture.h"
+#include "runtime/cli/plan/plan_frames.h"
 
 namespace fathom::cli {
 
 class Pilot {
  public:
   // Renders up to three frames: the first, the middle and the last. Returns an exit code after a message on failure.
-  std::optional<ExitCode> run(PlannedPictures& pictures, const PlanGrid& grid, const Streams& streams);
+  std::optional<ExitCode> run(PlanFrames& pictures, const PlanGrid& grid, const Streams& streams);
 
   double frame_seconds(const PlanGrid& grid) const;  // mean over the frames, for all samples
   double start_seconds() const { return start_; }    // mean seconds to compile a frame

@@ -13,7 +13,7 @@
 namespace fathom::cli {
 namespace {
 
-constexpr std::size_t kMostFaults = 10;
+constexpr std::size_t kMaxFaults = 10;
 
 bool exists(const std::string& path) {
   std::error_code error;
@@ -25,7 +25,7 @@ std::optional<std::string> fault_in(const std::string& file, const PlanGrid& gri
                                     const runtime::ReadLimits& limits) {
   if (!exists(file)) return "";
   const auto read = sums ? runtime::read_film(file, limits) : runtime::read_film_header(file, limits);
-  if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) return unread->problem;
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return read_error->problem;
   return fault_of(std::get<runtime::FilmFile>(read), grid, unit);
 }
 
@@ -66,7 +66,7 @@ std::variant<PlanStatus, ExitCode> status_of(const RenderPlan& plan, const std::
     add(status.left, number / per_task);
     if (!fault->empty()) {
       ++status.broken;
-      if (status.faults.size() < kMostFaults) status.faults.emplace_back(number, *fault);
+      if (status.faults.size() < kMaxFaults) status.faults.emplace_back(number, *fault);
     } else {
       status.begun += exists(file + kCheckpointEnding);
     }

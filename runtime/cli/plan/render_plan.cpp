@@ -102,21 +102,21 @@ ExitCode refuse_folder(const std::string& folder, const std::string& held, const
 
 }  // namespace
 
-std::variant<std::string, Unreadable> write_plan(RenderPlan& plan) {
+std::variant<std::string, ReadError> write_plan(RenderPlan& plan) {
   try {
     Json json = to_json(plan);
     plan.digest = digest_of(json);
     json["digest"] = plan.digest;
     return json.dump(1) + "\n";
   } catch (const Json::exception&) {
-    return Unreadable{"the scene's text is no UTF-8, which a plan must be", "save it as UTF-8", kBadScene};
+    return ReadError{"the scene's text is no UTF-8, which a plan must be", "save it as UTF-8", kBadScene};
   }
 }
 
 std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const compiler::Limits& limits,
                                              const Streams& streams) {
   const auto text = read_text(path, limits, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&text)) return fail(streams, path, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&text)) return fail(streams, path, *read_error);
   const auto refuse = [&](std::string_view why) {
     return fail(streams, kBadScene, fmt::format("{} is no plan that can be used: {}", quoted(path), why),
                 {"`fathom plan scene -o plan.json` makes one"});
@@ -158,7 +158,7 @@ std::variant<bool, ExitCode> find_folder(const std::string& folder, const Render
   std::error_code error;
   if (!std::filesystem::exists(claim, error)) return false;
   const auto held = read_text(claim, {}, streams);
-  if (const auto* unreadable = std::get_if<Unreadable>(&held)) return fail(streams, claim, *unreadable);
+  if (const auto* read_error = std::get_if<ReadError>(&held)) return fail(streams, claim, *read_error);
   std::string digest = std::get<std::string>(held);
   if (digest.ends_with('\n')) digest.pop_back();
   if (digest != plan.digest) return refuse_folder(folder, digest, plan, streams);

@@ -33,7 +33,7 @@ struct RenderPlan {
 };
 
 // Returns the text of the plan's file and sets the digest. Returns the reason if the scene cannot be written as JSON.
-std::variant<std::string, Unreadable> write_plan(RenderPlan& plan);
+std::variant<std::string, ReadError> write_plan(RenderPlan& plan);
 // Reads a plan. Prints a message and returns an exit code if the file cannot be read or is not a plan.
 std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const compiler::Limits& limits,
                                              const Streams& streams);

@@ -7,8 +7,8 @@
 #include <ostream>
 
 #include "runtime/cli/input/memory.h"
-#include "runtime/cli/picture/picture_job.h"
-#include "runtime/cli/plan/planned_picture.h"
+#include "runtime/cli/picture/render_job.h"
+#include "runtime/cli/plan/plan_frames.h"
 
 namespace fathom::cli {
 namespace {
@@ -51,7 +51,7 @@ class UnitRun {
     if (const auto code = open()) return *code;
     const auto frame = pictures_.at(unit.frame_index, unit.area);
     if (const auto* code = std::get_if<ExitCode>(&frame)) return *code;
-    Picture& picture = *std::get<Picture*>(frame);
+    PreparedRender& picture = *std::get<PreparedRender*>(frame);
     if (const auto code = make_folder(file)) return *code;
     RenderRequest& request = picture.request;
     request.unit = number;
@@ -61,7 +61,7 @@ class UnitRun {
     request.options.crop = unit.area;
     request.options.sample_range = unit.samples;
     request.options.resume_from = nullptr;
-    PictureJob job(picture, streams_, nullptr, interruption_);
+    RenderJob job(picture, streams_, nullptr, interruption_);
     const ExitCode code = job.run();
     rendered_ += job.complete();
     return code;
@@ -81,8 +81,8 @@ class UnitRun {
 
   bool is_there(const std::string& file, const PlanUnit& unit) const {
     auto read = runtime::read_film_header(file, read_limits(request_.scene.limits));
-    if (const auto* unread = std::get_if<runtime::UnreadFilm>(&read)) {
-      if (!unread->missing) note(streams_, fmt::format("{}; rendered again", unread->problem));
+    if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) {
+      if (!read_error->missing) note(streams_, fmt::format("{}; rendered again", read_error->problem));
       return false;
     }
     const auto fault = fault_of(std::get<runtime::FilmFile>(read), plan_.grid, unit);
@@ -111,7 +111,7 @@ class UnitRun {
   const Streams& streams_;
   std::optional<Interruption>& interruption_;
   const std::string folder_;
-  PlannedPictures pictures_;
+  PlanFrames pictures_;
   bool opened_ = false;
   std::size_t rendered_ = 0, there_ = 0;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

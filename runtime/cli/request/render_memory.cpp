@@ -17,7 +17,7 @@ double bytes_per_pixel(const runtime::Settings& settings, const RenderRequest& r
   const auto film =
       static_cast<double>(runtime::Film::memory_per_pixel(settings.layers, runtime::stages_of(settings)));
   // SIGUSR1 denoises a copy of the film while the render continues.
-  return film + kPictureBytes + (request.denoise ? film + kDenoiserBytes : 0) +
+  return film + kImageBytes + (request.denoise ? film + kDenoiserBytes : 0) +
          (holds_whole(request.outputs) ? film : 0);
 }
 
@@ -34,7 +34,7 @@ std::optional<ExitCode> check_memory(const RenderRequest& request, const compile
   return fail_about(
       request.scene, given ? kUsage : kBadScene,
       fmt::format("{}the render would take {} of memory ({:.0f} pixels of {:.0f} bytes); {} are allowed",
-                  given ? "" : scene.source.name() + ": ", in_words(needed), pixels, each, in_words(allowed)),
+                  given ? "" : scene.source.name() + ": ", format_bytes(needed), pixels, each, format_bytes(allowed)),
       {"ask for a smaller picture, or a part of it with --crop", compiler::raise(&compiler::Limits::memory, needed)},
       streams);
 }

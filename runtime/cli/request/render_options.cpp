@@ -106,10 +106,10 @@ void add_denoise_options(Arguments& arguments, RenderRequest& request) {
                  request.preview);
 }
 
-Verdict read_sample_range(std::string_view text, runtime::SampleRange& range) {
+OptionResult read_sample_range(std::string_view text, runtime::SampleRange& range) {
   const std::size_t middle = text.find(':');
   const auto wrong = [&] {
-    return Complaint{fmt::format("`{}` is not a range of samples", text),
+    return OptionError{fmt::format("`{}` is not a range of samples", text),
                      "write it as 0:32: the samples from the first number up to the second, which is not in it"};
   };
   if (middle == std::string_view::npos) return wrong();
@@ -120,8 +120,8 @@ Verdict read_sample_range(std::string_view text, runtime::SampleRange& range) {
   return std::nullopt;
 }
 
-Verdict read_file_name(std::string_view text, std::string& name) {
-  if (text.empty()) return Complaint{"the file's name is empty", "name it, as now.film"};
+OptionResult read_file_name(std::string_view text, std::string& name) {
+  if (text.empty()) return OptionError{"the file's name is empty", "name it, as now.film"};
   name = text;
   return std::nullopt;
 }
@@ -156,10 +156,10 @@ std::vector<std::string_view> method_names() {
   return names;
 }
 
-Verdict read_relaxation(std::string_view text, double& factor) {
+OptionResult read_relaxation(std::string_view text, double& factor) {
   const std::optional<double> number = to_number(text);
   if (!number || !(*number >= 1 && *number < 2))
-    return Complaint{fmt::format("`{}` is not a number in [1, 2)", text), "1 is plain sphere tracing"};
+    return OptionError{fmt::format("`{}` is not a number in [1, 2)", text), "1 is plain sphere tracing"};
   factor = *number;
   return std::nullopt;
 }
@@ -192,7 +192,7 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
 
 }  // namespace
 
-void add_picture_options(Arguments& arguments, RenderRequest& request) {
+void add_image_options(Arguments& arguments, RenderRequest& request) {
   add_film_options(arguments, request);
   add_camera_options(arguments, request.camera);
   add_renderer_options(arguments, request);
@@ -207,7 +207,7 @@ std::variant<RenderRequest, ExitCode> parse_planned(std::span<const std::string>
   RenderRequest request;
   Arguments of_plan("plan", "", "");
   add_define_option(of_plan, request.scene);
-  add_picture_options(of_plan, request);
+  add_image_options(of_plan, request);
   if (of_plan.parse(planned, streams)) return kBadScene;
   Arguments of_run("render", "", "");
   add_verbosity_options(of_run, request);
@@ -217,7 +217,7 @@ std::variant<RenderRequest, ExitCode> parse_planned(std::span<const std::string>
   add_error_format_option(of_run, request.scene);
   add_limit_option(of_run, request.scene.limits);
   if (of_run.parse(running, streams)) return kUsage;
-  if (const auto code = settle(request, streams)) return *code;
+  if (const auto code = resolve_options(request, streams)) return *code;
   request.options.layers = runtime::kAllLayers;
   if (request.denoise) request.options.layers.halves = true;
   return request;
@@ -241,7 +241,7 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
   add_marching_options(arguments, request);
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (request.units.given()) {
-    if (const auto code = check_units(request.units, arguments.given(), streams)) return *code;
+    if (const auto code = check_units(request.units, arguments.parsed_options(), streams)) return *code;
     return request;
   }
   if (request.scene.path.empty()) {
@@ -251,10 +251,10 @@ std::variant<RenderRequest, int> parse_render(std::span<const std::string> args,
     request.outputs.push_back(default_output(request.scene.path));
     request.default_output = true;
   }
-  if (const auto code = put_formats(request.outputs, request.format, streams)) return *code;
+  if (const auto code = apply_format(request.outputs, request.format, streams)) return *code;
   if (const auto code = check_standard_output(request, streams)) return *code;
   if (const auto code = check_frames(request, streams)) return *code;
-  if (const auto code = settle(request, streams)) return *code;
+  if (const auto code = resolve_options(request, streams)) return *code;
   return request;
 }
 

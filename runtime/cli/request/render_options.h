@@ -11,9 +11,9 @@
 namespace fathom::cli {
 
 // Adds the options that define the image, independent of output files and of how the work is done.
-void add_picture_options(Arguments& arguments, RenderRequest& request);
+void add_image_options(Arguments& arguments, RenderRequest& request);
 
-// Parses the request of a plan. `planned` holds the plan's options: those of add_picture_options() and --define.
+// Parses the request of a plan. `planned` holds the plan's options: those of add_image_options() and --define.
 // `running` holds the options of the user who runs the plan. A plan may come from a stranger, so its options can
 // neither name files nor raise limits. Prints a message and returns an exit code if options are invalid.
 std::variant<RenderRequest, ExitCode> parse_planned(std::span<const std::string> planned,

@@ -166,7 +166,7 @@ std::optional<ExitCode> override_size(const RenderRequest& request, compiler::Fi
     width = std::max(1.0, std::round(width / kPreviewShrink));
     height = std::max(1.0, std::round(height / kPreviewShrink));
   }
-  if (const auto code = check_picture_size(width, height, request.scene.limits, streams)) return code;
+  if (const auto code = check_image_size(width, height, request.scene.limits, streams)) return code;
   film.width = static_cast<int>(width);
   film.height = static_cast<int>(height);
   return std::nullopt;
@@ -180,7 +180,7 @@ std::optional<std::string> default_checkpoint(const RenderRequest& request) {
   return files.front() + kCheckpointEnding;
 }
 
-std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams) {
+std::optional<ExitCode> resolve_options(RenderRequest& request, const Streams& streams) {
   if (const auto code = check_together(request, streams)) return code;
   const auto marching = marching_of(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&marching)) return *code;

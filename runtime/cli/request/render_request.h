@@ -23,7 +23,7 @@ inline constexpr const char* kCheckpointEnding = ".checkpoint";
 struct RenderRequest {
   SceneArguments scene;
   std::vector<Output> outputs;  // at least one
-  int format = -1;              // index of --format; -1: not given; see put_formats()
+  int format = -1;              // index of --format; -1: not given; see apply_format()
   bool default_output = false;  // true if the output's name comes from the scene's name
   bool albedo = false, depth = false, normal = false;
   std::optional<double> aspect, fov;  // width over height; radians
@@ -41,7 +41,7 @@ struct RenderRequest {
   int precision = -1;                // a runtime::Precision; -1: not given
   std::optional<std::string> stats_json, cost_map;
   int verbosity = 0;
-  bool denoise = false;  // after settle(): also for --preview without --no-denoise
+  bool denoise = false;  // after resolve_options(): also for --preview without --no-denoise
   bool no_denoise = false;
   std::optional<std::string> checkpoint;      // --checkpoint FILE
   std::optional<double> checkpoint_interval;  // seconds
@@ -64,7 +64,7 @@ struct RenderRequest {
 std::optional<std::string> default_checkpoint(const RenderRequest& request);
 
 // Combines the options. Prints a message and returns an exit code if options conflict, whatever the scene.
-std::optional<ExitCode> settle(RenderRequest& request, const Streams& streams);
+std::optional<ExitCode> resolve_options(RenderRequest& request, const Streams& streams);
 
 // Overrides the scene's settings, camera, size and crop with the request's. Prints a message and returns an exit code
 // if they do not fit together.

@@ -11,7 +11,7 @@ namespace {
 
 using namespace fathom;
 using compiler::Box;
-using fathom::tests::compiled_objects;
+using fathom::test::compiled_objects;
 using glm::dvec3;
 
 // Extent in the scene's coordinates.

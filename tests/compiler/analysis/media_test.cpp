@@ -9,7 +9,7 @@ namespace fathom::compiler::media_test {
 namespace {
 
 CompiledScene with(const std::string& materials, const std::string& objects) {
-  return tests::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
+  return test::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
 }
 
 double value(const Medium& medium, glm::dvec3 place) {

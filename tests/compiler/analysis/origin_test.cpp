@@ -14,7 +14,7 @@
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -26,8 +26,8 @@ namespace {
 using compiler::Kind;
 using compiler::Scene;
 using glm::dvec3;
-using tests::compiled;
-using tests::compiled_objects;
+using test::compiled;
+using test::compiled_objects;
 
 Scene scene_of(std::uint64_t seed) {
   Random random(seed);
@@ -67,7 +67,7 @@ dvec3 origin_of(const std::string& objects, const std::string& camera = "[0, 0, 
 }  // namespace
 
 TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[origin]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, seed % 2 ? 3 : 30);
@@ -86,7 +86,7 @@ TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[ori
 }
 
 TEST_CASE("origin: a scene moved far off and back is as it was, to what a double holds there", "[origin]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e6);
@@ -103,18 +103,18 @@ TEST_CASE("origin: a scene moved far off and back is as it was, to what a double
 }
 
 // Moving back makes a graph exact again if its branches end in transforms and planes. A node that keeps the scene's
-// coordinates below it reports a larger magnitude.
+// coordinates below it reports a larger cancellation.
 TEST_CASE("origin: float errors of a scene brought back from far are within the bound", "[origin][bounds]") {
   vm::Workspace workspace;
   int fine = 0;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     const dvec3 origin = random_origin(random, 1e5);
     const Scene scene = optimised(compiler::moved(compiler::moved(scene_of(seed), -origin), origin));
-    const double magnitude = compiler::analyse(scene.graph)[scene.root].magnitude;
-    fine += magnitude < 1e3;
+    const double cancellation = compiler::analyse(scene.graph)[scene.root].cancellation;
+    fine += cancellation < 1e3;
     const vm::VerifiedProgram program = verified(*compiler::lower(scene, compiler::Source{}, 100000));
-    INFO("seed " << seed << ", magnitude " << magnitude << '\n' << print(scene));
+    INFO("seed " << seed << ", magnitude " << cancellation << '\n' << print(scene));
     for (int i = 0; i < 40; ++i) {
       dvec3 p = random.in_box(3);
       for (int step = 0; step < 4; ++step) {
@@ -125,14 +125,14 @@ TEST_CASE("origin: float errors of a scene brought back from far are within the 
       if (!std::isfinite(x + y + z)) continue;
       float narrow;
       vm::evaluate_distance(program, {&x, &y, &z}, 1, &narrow, workspace);
-      const double wide = vm::evaluate_distance(program, dvec3(x, y, z), workspace);
-      const double size = std::max({1.0, glm::length(dvec3(x, y, z)), std::abs(wide)});
-      INFO("at " << x << ' ' << y << ' ' << z << ": " << wide << ' ' << narrow);
-      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + magnitude));
+      const double doubles = vm::evaluate_distance(program, dvec3(x, y, z), workspace);
+      const double size = std::max({1.0, glm::length(dvec3(x, y, z)), std::abs(doubles)});
+      INFO("at " << x << ' ' << y << ' ' << z << ": " << doubles << ' ' << narrow);
+      CHECK(std::abs(static_cast<double>(narrow) - doubles) <= vm::kFloatError * (size + cancellation));
     }
   }
   INFO(fine << " of 400 are as exact as near zero");
-  CHECK(fine > few(300));
+  CHECK(fine > scaled_cases(300));
 }
 
 TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {
@@ -200,7 +200,7 @@ TEST_CASE("origin: a scene far off becomes the program of the scene at zero", "[
     REQUIRE(there.origin == dvec3(x, 0, 0));
     CHECK(there.distance.program().words == here.distance.program().words);
     CHECK(there.surface.program().words == here.surface.program().words);
-    CHECK(there.magnitude == here.magnitude);
+    CHECK(there.cancellation == here.cancellation);
     CHECK((there.bound.lo == here.bound.lo && there.bound.hi == here.bound.hi));
     CHECK((there.camera.position == here.camera.position && there.camera.target == here.camera.target));
   }
@@ -225,7 +225,7 @@ TEST_CASE("origin: what repeats without end is met where the camera is", "[origi
     INFO(node);
     REQUIRE(scene.origin.x == Approx(100000).margin(4));
     CHECK(plain.origin == dvec3(0));
-    CHECK(scene.magnitude < 10);
+    CHECK(scene.cancellation < 10);
     Random random(1);
     for (int i = 0; i < 200; ++i) {
       const dvec3 p = random.in_box(8);
@@ -240,7 +240,7 @@ TEST_CASE("origin: what keeps the scene's coordinates says how coarse it is", "[
   const auto scene = compiled_objects(R"({"type": "twist", "turn": 1e-5, "of": {"type": "sphere", "radius": 1,
       "translate": [1e5, 0, 0]}}, {"type": "elongate", "half_size": [0, 0.5, 0], "of": {"type": "sphere",
       "radius": 1, "translate": [0, 1e5, 0]}})");
-  CHECK(scene.magnitude >= 9e4);
+  CHECK(scene.cancellation >= 9e4);
 }
 
 }  // namespace fathom::test::origin_test

@@ -111,7 +111,7 @@ TEST_CASE("all rows after the first take no more work than is allowed", "[probe]
     last = maker.make(Kind::RoundUnion, one, {{moved(last, x), second}});
   }
   scene.root = last;
-  ProbeOptions options{.points = 64, .reach = 10, .threads = 1, .least_work = 50'000};
+  ProbeOptions options{.points = 64, .reach = 10, .threads = 1, .min_work = 50'000};
   std::uint64_t work = 0, seen = 0;
   const std::vector<ProbeRow> rows = probe(scene, {}, options);
   REQUIRE(rows.size() == 12);
@@ -121,10 +121,10 @@ TEST_CASE("all rows after the first take no more work than is allowed", "[probe]
     work += rows[i].points * program->debug.size();
     seen += rows[i].points > 0;
   }
-  CHECK(work <= options.least_work);
+  CHECK(work <= options.min_work);
   CHECK(seen >= 3);
   CHECK(rows.back().points == 0);
-  options.least_work *= 100;
+  options.min_work *= 100;
   CHECK(probe(scene, {}, options).back().points == 64);
 }
 

@@ -50,9 +50,9 @@ TEST_CASE("the report has a row for each object, by its own field", "[report]") 
   CHECK(report.certified);
   CHECK(report.estimates.empty());
   CHECK(report.objects[0].name == "sphere");
-  CHECK(class_of(report.objects[0].knowledge) == "exact");
+  CHECK(class_of(report.objects[0].facts) == "exact");
   CHECK_FALSE(report.objects[0].costliest);
-  CHECK(class_of(report.objects[1].knowledge) == "bound");
+  CHECK(class_of(report.objects[1].facts) == "bound");
   // Lipschitz constant of the twist: (kR + sqrt(k^2 R^2 + 4)) / 2 with k = pi/2; R is a thousandth more than sqrt 2.
   const double radius = 1.001 * std::sqrt(2.0), kr = 1.5707963267948966 * radius,
                expected = (kr + std::sqrt(kr * kr + 4)) / 2;
@@ -60,14 +60,14 @@ TEST_CASE("the report has a row for each object, by its own field", "[report]") 
   REQUIRE(report.objects[2].costliest);
   CHECK(report.objects[2].costliest->place.type == "twist");
   CHECK(report.objects[2].costliest->times == Approx(expected));
-  CHECK(report.objects[2].knowledge.box.lo.x == Approx(9 - radius));
+  CHECK(report.objects[2].facts.box.lo.x == Approx(9 - radius));
 }
 
 TEST_CASE("a steep part within an object counts, though it is levelled", "[report]") {
   const Report report = report_of(R"({"type": "union", "of": [{"type": "sphere", "radius": 1},
     {"name": "rope", "type": "twist", "turn": 90, "of": {"type": "box", "half_size": [1, 3, 1]}}]})");
   REQUIRE(report.objects.size() == 1);
-  CHECK(report.objects[0].knowledge.lipschitz == 1);
+  CHECK(report.objects[0].facts.lipschitz == 1);
   CHECK(report.objects[0].lipschitz > 2);
   REQUIRE(report.objects[0].costliest);
   CHECK(report.objects[0].costliest->place.name == "rope");
@@ -88,8 +88,8 @@ TEST_CASE("the nodes that are estimates are named, not what is made of them", "[
   REQUIRE(report.estimates.size() == 2);
   CHECK(report.estimates[0].name == "bulb");
   CHECK(report.estimates[1].name == "jump");
-  CHECK(class_of(report.objects[0].knowledge) == "estimate");
-  CHECK(class_of(report.objects[1].knowledge) == "exact");
+  CHECK(class_of(report.objects[0].facts) == "estimate");
+  CHECK(class_of(report.objects[1].facts) == "exact");
 }
 
 TEST_CASE("one union as the only object is one object", "[report]") {

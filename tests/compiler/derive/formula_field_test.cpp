@@ -12,7 +12,7 @@
 
 #include "compiler/frontend/read_scene.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/random/random_scene.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 using compiler::Box;
 using compiler::Kind;
-using compiler::Knowledge;
+using compiler::NodeFacts;
 using compiler::Scene;
 using glm::dvec3;
 
@@ -31,13 +31,13 @@ Scene scene_of(const std::string& object) {
   options.stop_after = "graph";
   Scene graph;
   options.on_pass = [&](std::string_view, const Scene& scene) { graph = scene; };
-  tests::compiled_objects(object, options);
+  test::compiled_objects(object, options);
   return graph;
 }
 
-Knowledge known(const Scene& scene) { return compiler::analyse(scene.graph)[scene.root]; }
+NodeFacts known(const Scene& scene) { return compiler::analyse(scene.graph)[scene.root]; }
 
-Knowledge of_formula(const std::string& formula) {
+NodeFacts of_formula(const std::string& formula) {
   return known(scene_of(R"({"type": "expression", "half_size": [2, 2, 2], "formula": ")" + formula + R"("})"));
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("the constants of formulas are close to the slopes that occur", "[form
   };
   for (const auto& [formula, slope] : cases) {
     INFO(formula);
-    const Knowledge k = of_formula(formula);
+    const NodeFacts k = of_formula(formula);
     CHECK(k.certified);
     CHECK(k.lipschitz >= slope * (1 - 1e-12));
     CHECK(k.lipschitz <= slope * 1.2);
@@ -71,7 +71,7 @@ TEST_CASE("the constants of formulas are close to the slopes that occur", "[form
 TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
   for (const char* formula : {"floor(3*x) - y", "1/x", "sqrt(x)", "tan(x)", "x + sign(y)"}) {
     INFO(formula);
-    const Knowledge k = of_formula(formula);
+    const NodeFacts k = of_formula(formula);
     CHECK(!k.certified);
     CHECK(k.outside == compiler::Exactness::Estimate);
     CHECK(std::isfinite(k.lipschitz));
@@ -80,7 +80,7 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
 
 // Formulas of hundreds of pieces. The specialised parts that prove the bound hold a few pieces each.
 TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
-  for (int seed = 0; seed < few(6); ++seed) {
+  for (int seed = 0; seed < scaled_cases(6); ++seed) {
     Random random(seed);
     std::string formula = "1";
     double steepest = 0;
@@ -120,7 +120,7 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
        {"0.5*x", "0.9*y", "0.3*sin(5*x)", "-0.2", "0.1*x*y", "0.05*x^2 - 0.5", "0.4*x + 0.4*y", "-0.4*abs(x)"}) {
     INFO(formula);
     const Scene scene = displaced_ball(formula);
-    const Knowledge k = known(scene);
+    const NodeFacts k = known(scene);
     INFO(compiler::describe(k));
     CHECK(k.certified);
     CHECK(k.box.finite());
@@ -137,7 +137,7 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
 }
 
 TEST_CASE("a ball that grows faster than the way walked has no end, and a constant all the same", "[formula_field]") {
-  const Knowledge k = known(displaced_ball("-2*x"));
+  const NodeFacts k = known(displaced_ball("-2*x"));
   CHECK(k.certified);
   CHECK(!k.box.finite());
   CHECK(k.lipschitz == Approx(3));

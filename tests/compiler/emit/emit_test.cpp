@@ -9,7 +9,7 @@
 
 #include "tests/support/compiled.h"
 
-namespace fathom::tests::emit_test {
+namespace fathom::test::emit_test {
 namespace {
 
 std::size_t lines_of(const std::string& text) {
@@ -88,7 +88,7 @@ TEST_CASE("emitted code grows with the program and has each function once", "[em
 }
 
 TEST_CASE("an emitted function takes places of the scene", "[emit]") {
-  const auto scene = fathom::tests::compiled(
+  const auto scene = fathom::test::compiled(
       R"({"version": 1, "camera": {}, "objects": [{"type": "sphere", "radius": 1, "translate": [30000, 0, 0]}]})");
   REQUIRE(scene.origin == glm::dvec3(30000, 0, 0));
   CHECK(compiler::emit_glsl(scene, "scene").find("vec3 q = scene_translate(p, 30000.0, 0.0, 0.0);") !=
@@ -106,4 +106,4 @@ TEST_CASE("names that a language does not allow are refused", "[emit]") {
   }
 }
 
-}  // namespace fathom::tests::emit_test
+}  // namespace fathom::test::emit_test

@@ -75,8 +75,8 @@ Differing differing(const compiler::CompiledScene& scene, float (*in_float)(floa
   for (std::size_t i = 0; i < kPoints; ++i) {
     result.floats += bits_of(in_float(cloud.x[i], cloud.y[i], cloud.z[i])) != machine[i];
     const glm::dvec3 p(cloud.x[i], cloud.y[i], cloud.z[i]);
-    const double wide = vm::evaluate_distance(scene.distance, p - scene.origin, workspace);
-    result.doubles += bits_of_double(in_double(p.x, p.y, p.z)) != bits_of_double(wide);
+    const double doubles = vm::evaluate_distance(scene.distance, p - scene.origin, workspace);
+    result.doubles += bits_of_double(in_double(p.x, p.y, p.z)) != bits_of_double(doubles);
   }
   return result;
 }
@@ -107,7 +107,7 @@ TEST_CASE("emitted C++ gives the machine's bits for scene files", "[emit]") {
     CAPTURE(path);
     std::stringstream text;
     text << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
-    const Differing result = differing(tests::compiled(text.str()), in_float, in_double);
+    const Differing result = differing(test::compiled(text.str()), in_float, in_double);
     CHECK(result.floats == 0);
     CHECK(result.doubles == 0);
   };

@@ -39,7 +39,7 @@ std::string shader(const std::string& version) {
     std::stringstream file;
     file << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
     const std::string name = std::filesystem::path(path).stem().string().substr(2);
-    text += compiler::emit_glsl(tests::compiled(file.str()), name);
+    text += compiler::emit_glsl(test::compiled(file.str()), name);
     sum += "  d += " + name + "_distance(colour.xyz);\n";
   }
   return text + "void main() {\n  colour = gl_FragCoord;\n  float d = 0.0;\n" + sum + "  colour = vec4(d);\n}\n";
@@ -48,7 +48,7 @@ std::string shader(const std::string& version) {
 }  // namespace
 
 TEST_CASE("emitted GLSL is GLSL ES 3.00 and GLSL 3.30", "[emit]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const char* version : {"300 es", "330"}) {
     std::ofstream(folder.path() / "scene.frag") << shader(version);
     const std::string command = "cd '" + folder.path().string() + "' && '" FATHOM_GLSLANG "' scene.frag > log";

@@ -66,7 +66,7 @@ HWY_EXPORT(emitted_gyroid);
 void check_bits(const char* path, const std::function<void(vm::Points, std::size_t, float*)>& field) {
   std::stringstream text;
   text << std::ifstream(std::string(FATHOM_SOURCE_DIR "/") + path).rdbuf();
-  const compiler::CompiledScene scene = tests::compiled(text.str());
+  const compiler::CompiledScene scene = test::compiled(text.str());
   constexpr std::size_t kPoints = 2048;
   Random random(5);
   Cloud cloud;

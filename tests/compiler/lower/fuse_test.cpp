@@ -6,7 +6,7 @@
 #include <string>
 
 #include "compiler/lower/lower.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/interpret/formula.h"
@@ -144,7 +144,7 @@ TEST_CASE("functions take coordinates, constants and locals for operands", "[fus
 }
 
 TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     GraphOptions options;
     options.depth = 2 + static_cast<int>(seed % 4);
@@ -160,7 +160,7 @@ TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
     // Every instruction keeps its source location.
     REQUIRE(once.debug.size() == verified(once).instructions());
   }
-  for (int seed = 0; seed < few(1000); ++seed) {
+  for (int seed = 0; seed < scaled_cases(1000); ++seed) {
     const vm::VerifiedProgram plain = formula(random_formula(seed));
     Random random(seed);
     INFO("formula, seed " << seed);

@@ -4,7 +4,7 @@
 
 #include "compiler/compile.h"
 #include "compiler/shapes/print_graph.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
 #include "vm/encoding/disassemble.h"
 
@@ -34,7 +34,7 @@ std::string print_everything(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("golden listings", "[golden]") { tests::check_golden("listings", print_everything); }
+TEST_CASE("golden listings", "[golden]") { test::check_golden("listings", print_everything); }
 
 TEST_CASE("a scene with one surface carries no material code", "[compile]") {
   const Source source("scene.json", R"({"version": 1, "objects": [{"type": "sphere", "radius": 1}]})");
@@ -83,7 +83,7 @@ TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[
 
 // Regression: a long chain of named nodes overflowed the call stack.
 TEST_CASE("a chain of a hundred thousand nodes compiles", "[compile]") {
-  const int links = test::few(100000);
+  const int links = test::scaled_cases(100000);
   std::string nodes = R"("n0": {"type": "sphere", "radius": 1})";
   for (int i = 1; i <= links; ++i) {
     nodes += ",\n \"n" + std::to_string(i) + R"(": {"type": "onion", "thickness": 0.001, "of": {"use": "n)" +

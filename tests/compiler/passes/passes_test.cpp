@@ -15,7 +15,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -80,7 +80,7 @@ void check_same(const Judged& before, const Scene& after, const Pass& pass) {
 }  // namespace
 
 TEST_CASE("a pass leaves the field as it was", "[passes]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed, false);
     const std::string text = print(before);
     const Judged was = judged(before, seed, 20);
@@ -96,7 +96,7 @@ TEST_CASE("a pass leaves the field as it was", "[passes]") {
 }
 
 TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene scene = scene_of(seed, true);
     for (const Pass& pass : compiler::passes()) {
       const Scene once = pass.run(scene);
@@ -109,7 +109,7 @@ TEST_CASE("a pass has nothing to do on its own result", "[passes]") {
 // All passes except those that preserve only the sign.
 TEST_CASE("all passes together leave the field as it was, and so does lowering", "[passes][lower]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     const Scene before = scene_of(seed, false);
     for (bool keep_paint : {false, true}) {
       Scene after = before;
@@ -138,7 +138,7 @@ TEST_CASE("all passes together leave the field as it was, and so does lowering",
 
 TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     const Scene scene = scene_of(seed, false);
     auto code = compiler::lower(scene, compiler::Source{}, 100000);
     REQUIRE(code);
@@ -188,9 +188,9 @@ TEST_CASE("a part's own material survives within a painted whole", "[lower]") {
 }
 
 TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene scene = scene_of(seed, false);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     Random random(seed);
     INFO("seed " << seed << ", " << compiler::describe(known) << '\n' << print(scene));
     CHECK(known.certified);

@@ -19,7 +19,7 @@ int check_overrides() {
   int settings = 0;
   for_each_setting_of<Record>([&](const auto& setting) {
     CAPTURE(std::string(setting.name));
-    const auto value = tests::another_value(setting);
+    const auto value = test::another_value(setting);
     SettingsOverrides overrides;
     CHECK(with_overrides(Record(), overrides).*setting.member == Record().*setting.member);
     overrides.*setting.overriding = value;
@@ -69,8 +69,8 @@ TEST_CASE("settings: names, options and rows differ, and defaults are valid", "[
 }
 
 TEST_CASE("settings: the documents name every property and every option", "[settings]") {
-  const std::string properties = tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/scene-file.md");
-  const std::string commands = tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/commands.md");
+  const std::string properties = test::read_file(FATHOM_SOURCE_DIR "/docs/reference/scene-file.md");
+  const std::string commands = test::read_file(FATHOM_SOURCE_DIR "/docs/reference/commands.md");
   for_each_setting([&](const auto& setting) {
     const std::string property = "`" + std::string(setting.name) + "`";
     if (!setting.doc.empty()) CHECK_THAT(properties, Catch::Contains(property));

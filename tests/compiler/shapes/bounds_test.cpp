@@ -15,7 +15,7 @@ namespace fathom::bounds_test {
 namespace {
 
 using namespace fathom;
-using fathom::tests::compiled_objects;
+using fathom::test::compiled_objects;
 
 // Max |float - double| relative to d_f, at random points near the surface within `size` of the origin.
 double largest_error(const compiler::CompiledScene& scene, double size) {
@@ -72,8 +72,8 @@ TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
 TEST_CASE("what is far away costs nothing here", "[bounds]") {
   CHECK(compiled_objects(
             R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
-            .magnitude <= 2);
-  CHECK(compiled_objects(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").magnitude <=
+            .cancellation <= 2);
+  CHECK(compiled_objects(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").cancellation <=
         0.1);
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("stretches of nested scales", "[bounds]") {
     const double c = std::sqrt(0.5);
     const compiler::Affine first{{dvec3(b, 0, 0), dvec3(0, 1 / b, 0), dvec3(0, 0, 1)}, dvec3(0)};
     const compiler::Affine turn{{dvec3(c, -c, 0), dvec3(c, c, 0), dvec3(0, 0, 1)}, dvec3(1, 2, 3)};
-    const compiler::Stretch s = compiler::stretch(compiler::compose(turn, first));
+    const compiler::SingularValues s = compiler::singular_values(compiler::compose(turn, first));
     CAPTURE(b);
     CHECK(s.most == Approx(b).epsilon(1e-9));
     CHECK(s.least == Approx(1 / b).epsilon(1e-9));

@@ -7,7 +7,7 @@
 
 #include "compiler/derive/formula_field.h"
 #include "compiler/shapes/bounds.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -42,7 +42,7 @@ void check_slopes(const Scene& scene, double size) {
   const double lipschitz = compiler::analyse(scene.graph)[scene.root].lipschitz;
   vm::Workspace workspace;
   Random random(1);
-  for (int i = 0; i < few(8000); ++i) {
+  for (int i = 0; i < scaled_cases(8000); ++i) {
     const dvec3 p = random.in_box(size), q = p + random.direction() * random.length(1e-4, 1);
     const double allowed = lipschitz * glm::length(p - q) * (1 + 1e-6) + 1e-12;
     const double a = judge_distance(scene.graph, scene.root, p), b = judge_distance(scene.graph, scene.root, q);

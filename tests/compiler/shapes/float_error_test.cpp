@@ -1,5 +1,5 @@
 // Float errors of shapes and alterations of any proportion, compared with the compiler's bound. Near the surface the
-// error is at most kFloatError * (max(1, |p|, |d|) + magnitude) (compiler/graph/knowledge.h).
+// error is at most kFloatError * (max(1, |p|, |d|) + cancellation) (compiler/graph/node_facts.h).
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/make_node.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"
@@ -31,7 +31,7 @@ using glm::dvec3;
 std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
   const compiler::NodeSpec& row = compiler::spec(kind);
   std::vector<double> params = random_params(kind, random);
-  const auto stretch = [&](double& length) {
+  const auto singular_values = [&](double& length) {
     if (random.chance(0.5)) length = static_cast<float>(length * std::pow(10.0, random.uniform(0, 4)));
   };
   if (kind == Kind::Quad) {  // its corners must stay in a plane
@@ -45,7 +45,7 @@ std::optional<std::vector<double>> stretched(Kind kind, Random& random) {
     const std::size_t end = points ? params.size() : next + static_cast<std::size_t>(compiler::width(spec.type));
     const bool length = spec.type != ParamType::Integer && spec.name != "angle" && spec.name != "normal";
     for (; next < end; ++next) {
-      if (length) stretch(params[next]);
+      if (length) singular_values(params[next]);
     }
   }
   if (row.check && row.check(params)) return std::nullopt;
@@ -58,8 +58,8 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
   auto result = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1'000'000));
   const auto* program = std::get_if<vm::VerifiedProgram>(&result);
   if (program == nullptr) return 0;
-  const double magnitude = compiler::analyse(scene.graph)[scene.root].magnitude;
-  CHECK(std::isfinite(magnitude));
+  const double cancellation = compiler::analyse(scene.graph)[scene.root].cancellation;
+  CHECK(std::isfinite(cancellation));
   vm::Workspace workspace;
   double largest = 0;
   for (int i = 0; i < points; ++i) {
@@ -76,22 +76,22 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
     p = dvec3(x, y, z);
     float narrow;
     vm::evaluate_distance(*program, {&x, &y, &z}, 1, &narrow, workspace);
-    const double wide = vm::evaluate_distance(*program, p, workspace);
-    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(wide)}) + magnitude);
-    largest = std::max(largest, std::abs(static_cast<double>(narrow) - wide) / allowed);
+    const double doubles = vm::evaluate_distance(*program, p, workspace);
+    const double allowed = vm::kFloatError * (std::max({1.0, glm::length(p), std::abs(doubles)}) + cancellation);
+    largest = std::max(largest, std::abs(static_cast<double>(narrow) - doubles) / allowed);
   }
   return largest;
 }
 
 }  // namespace
 
-// Regression: the magnitude of fat rings, needle triangles and long stars ignored the far corners that their code
+// Regression: the cancellation of fat rings, needle triangles and long stars ignored the far corners that their code
 // computes from.
 TEST_CASE("float errors of shapes of any proportion are within the bound", "[bounds]") {
   for (const Sort sort : {Sort::Solid, Sort::Outline}) {
     for (const Kind kind : primitive_kinds(sort, false)) {
       int tried = 0;
-      for (int seed = 0; seed < few(600); ++seed) {
+      for (int seed = 0; seed < scaled_cases(600); ++seed) {
         Random random(seed);
         const auto params = stretched(kind, random);
         if (!params) continue;
@@ -99,12 +99,12 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
         INFO(compiler::spec(kind).name << ", seed " << seed);
         CHECK(largest_error(single(kind, *params), sort == Sort::Outline, random, 20) <= 1);
       }
-      CHECK(tried > few(50));
+      CHECK(tried > scaled_cases(50));
     }
   }
 }
 
-// Regression: these nodes move a child in from far away, but their magnitude did not include the distance.
+// Regression: these nodes move a child in from far away, but their cancellation did not include the distance.
 TEST_CASE("float errors of what brings a child from far off are within the bound", "[bounds]") {
   Random random(1);
   for (const double far : {1.0, 1e3, 1e6}) {
@@ -116,7 +116,7 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
       REQUIRE(!maker.complaint(kind, params, child));
       scene.root = maker.make(kind, params, child);
       INFO(compiler::spec(kind).name);
-      CHECK(largest_error(scene, false, random, few(3000)) <= 1);
+      CHECK(largest_error(scene, false, random, scaled_cases(3000)) <= 1);
     };
     check(Kind::Revolve, {-far}, Kind::Polygon, {far + 1.25, 0, far + 2.75, 0, far + 2, 1});
     check(Kind::Mirror, {1, 0, 0, far}, Kind::Triangle,
@@ -142,7 +142,7 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
     scene.root = maker.make(kind, params, child);
     auto verified = vm::verify(*compiler::lower(scene, compiler::Source("", ""), 1000));
     const vm::VerifiedProgram& program = std::get<vm::VerifiedProgram>(verified);
-    const double magnitude = maker.known(scene.root).magnitude;
+    const double cancellation = maker.known(scene.root).cancellation;
     vm::Workspace workspace;
     Random random(1);
     for (int i = 0; i < 4000; ++i) {
@@ -151,12 +151,12 @@ TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bo
       const double scale = kind == Kind::Taper ? std::clamp(0.65 + 350 * y, 0.3, 1.0) : 1;
       const double x = (std::cos(angle) - std::sin(angle)) * scale, z = (std::sin(angle) + std::cos(angle)) * scale;
       const float px = static_cast<float>(x), py = static_cast<float>(y), pz = static_cast<float>(z);
-      const double wide = vm::evaluate_distance(program, dvec3(px, py, pz), workspace);
+      const double doubles = vm::evaluate_distance(program, dvec3(px, py, pz), workspace);
       float narrow;
       vm::evaluate_distance(program, {&px, &py, &pz}, 1, &narrow, workspace);
-      INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << wide << ' ' << narrow);
-      const double size = std::max({1.0, std::hypot(x, y, z), std::abs(wide)});
-      CHECK(std::abs(static_cast<double>(narrow) - wide) <= vm::kFloatError * (size + magnitude));
+      INFO(compiler::spec(kind).name << " at " << px << ' ' << py << ' ' << pz << ": " << doubles << ' ' << narrow);
+      const double size = std::max({1.0, std::hypot(x, y, z), std::abs(doubles)});
+      CHECK(std::abs(static_cast<double>(narrow) - doubles) <= vm::kFloatError * (size + cancellation));
     }
   }
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tests/compiler/shapes/primitives.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 
 namespace fathom::test::normals_test {
@@ -56,7 +56,7 @@ TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
   for_each_primitive([&](const NodeSpec& row) {
     if (estimated(row.kind)) return;
     int settled = 0;
-    for (int seed = 0; seed < few(60); ++seed) {
+    for (int seed = 0; seed < scaled_cases(60); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const vm::VerifiedProgram program = plain_lowering(s.scene);
@@ -83,7 +83,7 @@ TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
       }
     }
     INFO(row.name);
-    CHECK(settled > few(2500));
+    CHECK(settled > scaled_cases(2500));
   });
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("the gradient is a unit vector on the surface", "[shapes][normals]") {
 TEST_CASE("float normals of smooth shapes are within 1e-6 radians", "[shapes][normals]") {
   vm::Workspace workspace;
   for (Kind kind : {Kind::Sphere, Kind::Torus, Kind::Plane, Kind::RoundCone}) {
-    for (int seed = 0; seed < few(40); ++seed) {
+    for (int seed = 0; seed < scaled_cases(40); ++seed) {
       Random random(seed);
       const Sample s = sample(kind, random);
       compiler::Scene scene = s.scene;
@@ -120,7 +120,7 @@ TEST_CASE("float normals of smooth shapes are within 1e-6 radians", "[shapes][no
 TEST_CASE("gradients never are NaN: centres, axes, edges, corners", "[shapes][normals]") {
   vm::Workspace workspace;
   for_each_primitive([&](const NodeSpec& row) {
-    for (int seed = 0; seed < few(32); ++seed) {
+    for (int seed = 0; seed < scaled_cases(32); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const vm::VerifiedProgram program = plain_lowering(s.scene);
@@ -164,16 +164,16 @@ TEST_CASE("gradients are what differences say, away from creases", "[shapes][nor
   };
   for_each_primitive([&](const NodeSpec& row) {
     int smooth = 0;
-    for (int seed = 0; seed < few(40); ++seed) {
+    for (int seed = 0; seed < scaled_cases(40); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       INFO(s.name << ", seed " << seed);
       smooth += check(s.scene, random, 50);
     }
     INFO(row.name);
-    if (!estimated(row.kind)) CHECK(smooth > few(1000));
+    if (!estimated(row.kind)) CHECK(smooth > scaled_cases(1000));
   });
-  for (int seed = 0; seed < few(300); ++seed) {
+  for (int seed = 0; seed < scaled_cases(300); ++seed) {
     Random random(seed);
     const compiler::Scene scene = random_scene(random);
     INFO("random graph, seed " << seed);

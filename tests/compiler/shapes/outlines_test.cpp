@@ -12,7 +12,7 @@
 #include "compiler/shapes/make_node.h"
 #include "compiler/shapes/node_table.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge_geometry.h"
 #include "tests/support/judge/judge_outlines.h"
@@ -31,7 +31,7 @@ using glm::dvec3;
 
 struct Made {
   compiler::Scene scene;
-  compiler::Knowledge known;
+  compiler::NodeFacts known;
 };
 
 Made over_outline(Kind above, double parameter, Kind kind, const std::vector<double>& params) {
@@ -47,7 +47,7 @@ Made over_outline(Kind above, double parameter, Kind kind, const std::vector<dou
 dvec3 point_near_outline(Random& random) { return random.in_box(random.chance(0.8) ? 2 : 8); }
 
 // Compares a value with the true distance: equal if the field is exact there, else nearer to zero with the same sign.
-void check(double value, double truth, const compiler::Knowledge& known) {
+void check(double value, double truth, const compiler::NodeFacts& known) {
   if ((truth < 0 ? known.inside : known.outside) == Exactness::Exact) {
     CHECK(std::abs(value - truth) <= 1e-12 * std::max(1.0, std::abs(truth)));
   } else {
@@ -181,7 +181,7 @@ class TurnedBoundary {
 };
 
 // Checks an outline that is revolved with an edge or a part on the axis or beyond it.
-compiler::Knowledge check_on_axis(Kind kind, const std::vector<double>& params, double offset, Random& random) {
+compiler::NodeFacts check_on_axis(Kind kind, const std::vector<double>& params, double offset, Random& random) {
   vm::Workspace workspace;
   const Made made = over_outline(Kind::Revolve, offset, kind, params);
   const TurnedBoundary truth(kind, params, offset);
@@ -209,7 +209,7 @@ TEST_CASE("an outline with an edge on the axis turns into a solid without a seam
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
     const compiler::Box box = compiler::spec(kind).bound(params);
     const double offset = random.chance(0.5) ? -box.lo.x : -box.lo.x - random.uniform(0, 1) * (box.hi.x - box.lo.x);
-    const compiler::Knowledge known = check_on_axis(kind, params, offset, random);
+    const compiler::NodeFacts known = check_on_axis(kind, params, offset, random);
     exact += known.inside == Exactness::Exact;
     ++all;
   });
@@ -230,8 +230,8 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
   for (const std::vector<double>& points : outlines) {
     for (const double offset : {0.0, 0.25, -0.25}) {
       INFO(points.size() / 2 << " corners, offset " << offset);
-      for (int i = 0; i < few(20); ++i) {
-        const compiler::Knowledge known = check_on_axis(Kind::Polygon, points, offset, random);
+      for (int i = 0; i < scaled_cases(20); ++i) {
+        const compiler::NodeFacts known = check_on_axis(Kind::Polygon, points, offset, random);
         REQUIRE(known.outside == Exactness::Exact);
         REQUIRE(known.inside == Exactness::Exact);
       }
@@ -243,7 +243,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
 TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[outlines]") {
   vm::Workspace workspace;
   const auto at = [&](const std::string& solid, dvec3 p) {
-    return vm::evaluate_distance(tests::compiled_objects(solid).distance, p, workspace);
+    return vm::evaluate_distance(test::compiled_objects(solid).distance, p, workspace);
   };
   const std::string rectangle = R"({"type": "rectangle", "half_size": [1, 2], "translate": [1, 0, 0]})";
   const std::string turned =

@@ -11,7 +11,7 @@
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge.h"
@@ -28,7 +28,7 @@ constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
 
 // Max errors of a kind: the machine's double and float evaluators against the judge.
 struct Errors {
-  double wide = 0;    // double, relative to scale_of(p)
+  double doubles = 0;    // double, relative to scale_of(p)
   double narrow = 0;  // float, in units of 2^-24 scale_of(p)
   // Like `narrow`, at points within scale / 16 of the surface, where a marching step may end.
   double near = 0;
@@ -51,7 +51,7 @@ Errors measure(Kind kind, int shapes, int points) {
         largest = error;
         where = s.name + " at " + place(p) + ", seed " + std::to_string(seed);
       };
-      note(std::abs(vm::evaluate_distance(program, p, workspace) - truth) / scale, worst.wide, worst.where_wide);
+      note(std::abs(vm::evaluate_distance(program, p, workspace) - truth) / scale, worst.doubles, worst.where_wide);
       const double narrow = std::abs(evaluate_float(program, p, workspace).distance - truth) / (scale * kUnit);
       note(narrow, worst.narrow, worst.where_narrow);
       if (std::abs(truth) < scale / 16) note(narrow, worst.near, worst.where_near);
@@ -99,7 +99,7 @@ TEST_CASE("random shapes are valid", "[shapes]") {
 TEST_CASE("the judge finds the distances that brute force finds", "[shapes][judge]") {
   for_each_primitive([](const NodeSpec& row) {
     if (!exact(row)) return;
-    for (int seed = 0; seed < few(8); ++seed) {
+    for (int seed = 0; seed < scaled_cases(8); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const auto truth = brute_force(row, s.params);
@@ -123,7 +123,7 @@ TEST_CASE("every primitive in double is the judge's", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
     const Errors errors = measure(row.kind, 60, 200);
     INFO(row.name << ": " << errors.where_wide);
-    CHECK(errors.wide <= (estimated(row.kind) ? 1e-9 : 1e-14));
+    CHECK(errors.doubles <= (estimated(row.kind) ? 1e-9 : 1e-14));
   });
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("table of errors", "[.report]") {
   for_each_primitive([](const NodeSpec& row) {
     const Errors errors = measure(row.kind, 1000, 1000);
     std::printf("%-17s double %9.3g   float %9.3g, near the surface %9.3g x 2^-24   (%s)\n",
-                std::string(row.name).c_str(), errors.wide, errors.narrow, errors.near, errors.where_narrow.c_str());
+                std::string(row.name).c_str(), errors.doubles, errors.narrow, errors.near, errors.where_narrow.c_str());
   });
 }
 
@@ -162,14 +162,14 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
   };
   for_each_primitive([&](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (int seed = 0; seed < few(16); ++seed) {
+    for (int seed = 0; seed < scaled_cases(16); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       INFO(s.name << ", seed " << seed);
       check(s.scene, random, 60);
     }
   });
-  for (int seed = 0; seed < few(240); ++seed) {
+  for (int seed = 0; seed < scaled_cases(240); ++seed) {
     Random random(seed);
     const compiler::Scene scene = random_scene(random);
     INFO("random graph, seed " << seed);
@@ -179,7 +179,7 @@ TEST_CASE("no field changes faster than its Lipschitz constant", "[shapes]") {
 
 TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
-    for (int seed = 0; seed < few(80); ++seed) {
+    for (int seed = 0; seed < scaled_cases(80); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);
@@ -197,7 +197,7 @@ TEST_CASE("a primitive is nowhere negative outside its box", "[shapes]") {
 TEST_CASE("a primitive's box is tight", "[shapes]") {
   for_each_primitive([](const NodeSpec& row) {
     if (estimated(row.kind)) return;
-    for (int seed = 0; seed < few(16); ++seed) {
+    for (int seed = 0; seed < scaled_cases(16); ++seed) {
       Random random(seed);
       const Sample s = sample(row.kind, random);
       const compiler::Box box = row.bound(s.params);

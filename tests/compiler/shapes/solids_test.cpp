@@ -40,7 +40,7 @@ TEST_CASE("solids composed of others have the judge's distance, a box and a cons
       Random random(seed);
       const Sample s = sample(row.kind, random);
       INFO(s.name << ", seed " << seed);
-      const compiler::Knowledge known = compiler::analyse(s.scene.graph)[s.scene.root];
+      const compiler::NodeFacts known = compiler::analyse(s.scene.graph)[s.scene.root];
       const vm::VerifiedProgram program = plain_lowering(s.scene);
       for (int i = 0; i < 50; ++i) {
         const dvec3 p = random_point(random), q = p + random.direction() * random.length(1e-3, 2);
@@ -111,7 +111,7 @@ TEST_CASE("a tube is as far as its wall", "[shapes]") {
     Random random(seed);
     const std::vector<double> k = random_params(Kind::Tube, random);
     const compiler::Scene scene = single(Kind::Tube, k);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     CHECK((known.outside == compiler::Exactness::Exact && known.inside == compiler::Exactness::Exact));
     const vm::VerifiedProgram program = plain_lowering(scene);
     for (int i = 0; i < 100; ++i) {

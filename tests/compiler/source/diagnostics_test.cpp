@@ -26,9 +26,9 @@ namespace {
 
 using namespace fathom::compiler;
 namespace fs = std::filesystem;
-using fathom::tests::check_golden;
-using fathom::tests::golden_files;
-using fathom::tests::read_file;
+using fathom::test::check_golden;
+using fathom::test::golden_files;
+using fathom::test::read_file;
 
 Definitions definitions_in(const std::string& scene) {
   Definitions definitions;
@@ -43,7 +43,7 @@ Definitions definitions_in(const std::string& scene) {
 // Diagnoses a scene, or a listing, which begins with its header or with a comment of its own kind.
 Diagnostics diagnose(Source& source) {
   Diagnostics diagnostics;
-  if (source.text().starts_with("fathom 3") || source.text().starts_with(";")) {
+  if (source.text().starts_with("fathom 4") || source.text().starts_with(";")) {
     FileContents contents;
     read_listing(source, diagnostics, contents);
     return diagnostics;
@@ -51,7 +51,7 @@ Diagnostics diagnose(Source& source) {
   CompileOptions options;
   options.definitions = definitions_in(source.text());
   options.lint = true;
-  options.imports = tests::imports_from(fs::path(FATHOM_SOURCE_DIR) / "tests/golden/imports");
+  options.imports = test::imports_from(fs::path(FATHOM_SOURCE_DIR) / "tests/golden/imports");
   options.on_source = [&](const Source& whole) {
     if (!whole.imports().empty()) source = whole;
   };
@@ -61,7 +61,7 @@ Diagnostics diagnose(Source& source) {
 
 TEST_CASE("golden diagnostics", "[diagnostics]") {
   check_golden("diagnostics", [](const std::string& input) {
-    Source source(is_text_scene(input) && !input.starts_with("fathom 3") ? "scene.fathom" : "scene.json", input);
+    Source source(is_text_scene(input) && !input.starts_with("fathom 4") ? "scene.fathom" : "scene.json", input);
     const Diagnostics diagnostics = diagnose(source);
     return diagnostics.print(source, ErrorFormat::Text);
   });

@@ -27,7 +27,7 @@ mode_t mode_of(const std::string& path) {
 }
 
 TEST_CASE("atomic files: what is replaced leaves its permissions, what is new has the usual ones") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const mode_t mask = ::umask(022);
   CHECK_FALSE(write_file(kBytes, folder.file("new")));
   ::umask(mask);
@@ -40,7 +40,7 @@ TEST_CASE("atomic files: what is replaced leaves its permissions, what is new ha
 // Regression: the program checked the old checkpoint before syncing the new one. In the seconds between, another
 // run's checkpoint could be replaced.
 TEST_CASE("atomic files: whether the target may be replaced is asked last") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   AtomicFile file(folder.file("target"));
   REQUIRE(file.write(kBytes));
   const auto another = [&] {
@@ -54,7 +54,7 @@ TEST_CASE("atomic files: whether the target may be replaced is asked last") {
 }
 
 TEST_CASE("atomic files: of a link the target is written") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   fs::create_directory(folder.path() / "far");
   std::ofstream(folder.file("far/target")) << "before";
   fs::create_symlink("far/target", folder.path() / "link");
@@ -69,7 +69,7 @@ TEST_CASE("atomic files: of a link the target is written") {
 }
 
 TEST_CASE("atomic files: a name as long as names can be is written, a longer one is refused before") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string longest(255, 'n');
   CHECK_FALSE(check_file_path(folder.file(longest)));
   CHECK_FALSE(write_file(kBytes, folder.file(longest)));
@@ -83,7 +83,7 @@ TEST_CASE("atomic files: a name as long as names can be is written, a longer one
 }
 
 TEST_CASE("atomic files: what a killed program left is removed, what another is writing is not") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const char* const kMine[] = {".fathom-mine", ".fathom-", ".fathom-2024", ".fathom-2024-01-05"};
   for (const char* name : kMine) std::ofstream(folder.file(name)) << "x";
   for (const char* name : {".fathom-1-0", ".fathom-99999999-7"}) std::ofstream(folder.file(name)) << "x";
@@ -99,7 +99,7 @@ TEST_CASE("atomic files: what a killed program left is removed, what another is 
 }
 
 TEST_CASE("atomic files: a stamp tells whether it is still the same file") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   CHECK_FALSE(stamp_of(folder.file("a")));
   CHECK_FALSE(write_file(kBytes, folder.file("a")));
   const auto first = stamp_of(folder.file("a"));

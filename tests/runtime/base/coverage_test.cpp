@@ -51,17 +51,17 @@ Coverage random_coverage(RandomBlocks& random, int blocks) {
   Coverage covered;
   for (int i = 0; i < blocks; ++i) {
     for (const SampleBlock& piece : covered.missing(random.block())) covered.add(piece);
-    covered.tidy();
+    covered.canonicalise();
   }
   return covered;
 }
 
 TEST_CASE("coverage: the tidy form is known when it is seen") {
-  int tidy = 0, untidy = 0;
+  int canonicalise = 0, untidy = 0;
   for (unsigned seed = 0; seed < 4000; ++seed) {
     RandomBlocks random(seed);
     Coverage covered;
-    // The tidy form with one block removed, added or changed, or unchanged.
+    // The canonical form with one block removed, added or changed, or unchanged.
     std::vector<SampleBlock> blocks = random_coverage(random, random.whole(4)).blocks();
     const int change = random.whole(5);
     if (change == 1 && !blocks.empty()) blocks.pop_back();
@@ -74,12 +74,12 @@ TEST_CASE("coverage: the tidy form is known when it is seen") {
     }
     for (const SampleBlock& block : blocks) covered.add(block);
     Coverage form = covered;
-    form.tidy();
-    CHECK(form.is_tidy());
-    CHECK(covered.is_tidy() == (covered == form));
-    ++(covered.is_tidy() ? tidy : untidy);
+    form.canonicalise();
+    CHECK(form.is_canonical());
+    CHECK(covered.is_canonical() == (covered == form));
+    ++(covered.is_canonical() ? canonicalise : untidy);
   }
-  CHECK(tidy > 500);
+  CHECK(canonicalise > 500);
   CHECK(untidy > 500);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("coverage: missing is what is not there, once") {
     const std::vector<SampleBlock> missing = covered.missing(asked);
     for (const SampleBlock& piece : missing) {
       mark(sum, piece);
-      REQUIRE(common(piece, asked) == piece);
+      REQUIRE(intersection(piece, asked) == piece);
     }
     REQUIRE(*std::max_element(sum.begin(), sum.end()) == 1);
     Table wanted = table_of({asked});
@@ -118,7 +118,7 @@ TEST_CASE("coverage: its form depends on what is covered alone") {
     std::shuffle(grains.begin(), grains.end(), random.engine());
     Coverage again;
     for (const SampleBlock& grain : grains) again.add(grain);
-    again.tidy();
+    again.canonicalise();
     REQUIRE(again == covered);
     REQUIRE(again.size() == grains.size());
   }
@@ -149,7 +149,7 @@ TEST_CASE("coverage: whether many blocks are apart is soon known") {
     even.add({{0, 0, 9, 1}, {4 * i, 4 * i + 1}});
     odd.add({{0, 0, 9, 1}, {4 * i + 2, 4 * i + 3}});
   }
-  REQUIRE(even.is_tidy());
+  REQUIRE(even.is_canonical());
   const auto start = std::chrono::steady_clock::now();
   CHECK_FALSE(even.overlap(odd));
   CHECK(even.overlap(even));

@@ -17,7 +17,7 @@ class Watched {
   FileWatch watch() const { return FileWatch({path_}); }
 
  private:
-  tests::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
   std::string path_;
 };
 
@@ -81,7 +81,7 @@ TEST_CASE("file watch: a file that is away has not changed, nor settled, until i
 }
 
 TEST_CASE("file watch: one of several files is enough") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.file("a")) << "1";
   std::ofstream(folder.file("b")) << "1";
   FileWatch watch({folder.file("a"), folder.file("b")});

@@ -82,9 +82,9 @@ TEST_CASE("stats: a clock charges each stage what passes in it, and no time twic
   const Clock::time_point start = Clock::now();
   clock.start(Stage::March);
   pass();
-  CHECK(clock.enter(Stage::Resolve) == Stage::March);
+  CHECK(clock.enter(Stage::Certify) == Stage::March);
   pass();
-  CHECK(clock.enter(Stage::March) == Stage::Resolve);
+  CHECK(clock.enter(Stage::March) == Stage::Certify);
   CHECK(clock.enter(Stage::March) == Stage::March);
   pass();
   clock.enter(Stage::Film);
@@ -94,7 +94,7 @@ TEST_CASE("stats: a clock charges each stage what passes in it, and no time twic
   const double all = std::chrono::duration<double>(Clock::now() - start).count();
   const StageSeconds seconds = clock.seconds();
   CHECK(seconds[static_cast<std::size_t>(Stage::March)] >= 0.004);
-  CHECK(seconds[static_cast<std::size_t>(Stage::Resolve)] >= 0.002);
+  CHECK(seconds[static_cast<std::size_t>(Stage::Certify)] >= 0.002);
   CHECK(seconds[static_cast<std::size_t>(Stage::Normals)] == 0);
   CHECK(seconds[static_cast<std::size_t>(Stage::Shading)] == 0);
   CHECK(std::accumulate(seconds.begin(), seconds.end(), 0.0) <= all - 0.002);

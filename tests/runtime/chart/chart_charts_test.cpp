@@ -14,14 +14,14 @@
 namespace fathom::runtime::chart_charts_test {
 namespace {
 
-using tests::circles;
-using tests::count_of;
-using tests::find_text;
-using tests::kProvenance;
-using tests::sample_images;
-using tests::sample_rays;
-using tests::texts;
-using tests::what_is_wrong;
+using test::circles;
+using test::count_of;
+using test::find_text;
+using test::kProvenance;
+using test::sample_images;
+using test::sample_rays;
+using test::texts;
+using test::what_is_wrong;
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -30,7 +30,7 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
   const std::string svg = chart_a(rows, "composite", Cost::Time, kProvenance);
   CHECK(what_is_wrong(svg) == "");
   const auto words = texts(svg);
-  const tests::Text *camera = find_text(words, "camera rays, 50\u00a0000"),
+  const test::Text *camera = find_text(words, "camera rays, 50\u00a0000"),
                     *bounce = find_text(words, "bounce rays, 50\u00a0000"),
                     *grazing = find_text(words, "grazing rays, 50\u00a0000");
   REQUIRE((camera && bounce && grazing));
@@ -54,10 +54,10 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
 
 TEST_CASE("chart A: the default is bold, on the front and on the staircase", "[chart]") {
   const std::string svg = chart_a(sample_rays(), "composite", Cost::Time, kProvenance);
-  for (const tests::Circle& marker : circles(svg, "marker")) {
+  for (const test::Circle& marker : circles(svg, "marker")) {
     if (marker.radius < 4) continue;  // the default's bold markers are larger
     bool ringed = false;
-    for (const tests::Circle& ring : circles(svg, "ring")) ringed |= ring.x == marker.x && ring.y == marker.y;
+    for (const test::Circle& ring : circles(svg, "ring")) ringed |= ring.x == marker.x && ring.y == marker.y;
     const bool in_legend = marker.x < 100 && marker.y > 450;
     CHECK(ringed != in_legend);
     if (in_legend) continue;

@@ -23,7 +23,7 @@ double lightness(const Rgb& color) {
   return y > 0.008856 ? 116 * std::cbrt(y) - 16 : 903.3 * y;
 }
 
-Rgb pixel(const Picture& picture, int x, int y) {
+Rgb pixel(const ByteImage& picture, int x, int y) {
   const std::size_t at =
       3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x));
   return {picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
@@ -83,7 +83,7 @@ TEST_CASE("chart colormap: a map has its pixels above and the scale below", "[ch
   std::vector<float> values(width * height, 10);
   values[0] = 1, values[1] = 100, values[2] = kNaN, values[3] = 0;
   const ColorScale scale = scale_for(values, true);
-  const Picture map = draw_map(values, width, height, scale);
+  const ByteImage map = draw_map(values, width, height, scale);
   CHECK(map.width == width);
   CHECK(map.height == height + kScaleHeight);
   REQUIRE(map.rgb.size() == static_cast<std::size_t>(3 * map.width * map.height));
@@ -106,7 +106,7 @@ TEST_CASE("chart colormap: a map has its pixels above and the scale below", "[ch
 TEST_CASE("chart colormap: narrow maps keep their scale, bad sizes are said", "[chart]") {
   for (const int width : {1, 2, 17, 159}) {
     const std::vector<float> values(static_cast<std::size_t>(width), 1);
-    const Picture map = draw_map(values, width, 1, scale_for(values, false));
+    const ByteImage map = draw_map(values, width, 1, scale_for(values, false));
     CHECK(map.width == width);
     CHECK(map.height == 1 + kScaleHeight);
   }

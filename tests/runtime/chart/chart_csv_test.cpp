@@ -7,7 +7,7 @@
 namespace fathom::runtime::chart_csv_test {
 namespace {
 
-using tests::kProvenance;
+using test::kProvenance;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -40,7 +40,7 @@ TEST_CASE("chart csv: the columns of rays and their values", "[chart]") {
   row.ray_class = "bounce";
   row.rays = 12345678901;
   row.ns_med = 1, row.ns_min = 2, row.ns_max = 3, row.evals_mean = 4.5, row.evals_p99 = 6;
-  row.false_hit_ppm = 7, row.false_miss_ppm = 8, row.exhausted_ppm = 9, row.contact_ppm = 10, row.gross_ppm = 11;
+  row.false_hit_ppm = 7, row.false_miss_ppm = 8, row.exhausted_ppm = 9, row.near_miss_ppm = 10, row.gross_ppm = 11;
   row.terr_p50 = 2.5e-6, row.terr_p99 = 13, row.terr_max = std::numeric_limits<double>::quiet_NaN();
   row.nerr_p50 = 15, row.nerr_p99 = 0.1, row.nerr_max = 17;
   const std::vector<std::string> lines = lines_of(rays_csv(std::vector{row}, kProvenance));
@@ -48,7 +48,7 @@ TEST_CASE("chart csv: the columns of rays and their values", "[chart]") {
   CHECK(
       lines[0] ==
       "scene,method,precision,eps,relax,steps_max,class,rays,ns_med,ns_min,ns_max,evals_mean,evals_p99,false_hit_ppm,"
-      "false_miss_ppm,exhausted_ppm,contact_ppm,gross_ppm,terr_p50,terr_p99,terr_max,nerr_p50,nerr_p99,nerr_max,"
+      "false_miss_ppm,exhausted_ppm,near_miss_ppm,gross_ppm,terr_p50,terr_p99,terr_max,nerr_p50,nerr_p99,nerr_max,"
       "commit,cpu,compiler");
   CHECK(lines[1] ==
         "\"a,b\",sphere tracing,f32,0.001,1.6,64,bounce,12345678901,1,2,3,4.5,6,7,8,9,10,11,2.5e-06,13,nan,15,0.1,17,"
@@ -68,7 +68,7 @@ TEST_CASE("chart csv: the columns of pictures and their values", "[chart]") {
 
 TEST_CASE("chart csv: a line a row", "[chart]") {
   CHECK(lines_of(rays_csv({}, kProvenance)).size() == 1);
-  const auto rows = tests::sample_rays();
+  const auto rows = test::sample_rays();
   CHECK(lines_of(rays_csv(rows, kProvenance)).size() == rows.size() + 1);
 }
 

@@ -28,7 +28,7 @@ const char* const kGroundScene = R"("camera": {"position": [0, 0.5, 4], "target"
     "film": {"width": 32, "height": 16}, "background": {"bottom": [0.2, 0.2, 0.2], "top": [1, 1, 1]},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1}, {"type": "sphere", "radius": 1}])";
 // A floor under a small lamp.
-const char* const kLampScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
+const char* const kAreaLightScene = R"("camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
     "film": {"width": 32, "height": 16}, "render": {"rr_depth": 2},
     "materials": {"lamp": {"type": "emissive", "emission": [50, 50, 50]}},
     "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": -1},
@@ -122,7 +122,7 @@ TEST_CASE("chart: what is charted ends with the reference, and starts with what 
   const std::vector<Marching> charted = charted_methods();
   CHECK(charted.size() == 33);
   CHECK(charted.back().method == Method::Certified);
-  const std::vector<ImageWay> painted = painted_ways(scene_of(kBallScene));
+  const std::vector<ImageVariant> painted = image_variants(scene_of(kBallScene));
   CHECK(painted.size() == 4);
   for (const Marching& first : {charted.front(), painted.front().marching}) {
     CHECK(first.method == Marching{}.method);
@@ -133,15 +133,15 @@ TEST_CASE("chart: what is charted ends with the reference, and starts with what 
   CHECK((painted.front().sampler == settings.sampler && painted.front().light_sampling == settings.light_sampling));
   CHECK(compiler::kSamplerNames[static_cast<std::size_t>(settings.sampler)] == kDefaultSampler);
   CHECK(kLightSamplingNames[static_cast<std::size_t>(settings.light_sampling)] == kDefaultLights);
-  CHECK(painted_ways(scene_of(kLampScene)).size() == 9);
+  CHECK(image_variants(scene_of(kAreaLightScene)).size() == 9);
   // Regression: the sky was not counted as a light to sample.
   const std::string under_sky = R"("background": {"type": "sky"}, "objects": [{"type": "sphere", "radius": 1}])";
-  CHECK(painted_ways(scene_of(under_sky)).size() == 9);
+  CHECK(image_variants(scene_of(under_sky)).size() == 9);
 }
 
 // One row per way, in the order of kWays, for each class of rays.
 enum Way { kTiered, kCoarse, kFine, kHasty, kRelaxed, kReference, kWays };
-std::vector<Marching> ways() {
+std::vector<Marching> variants() {
   return {{.method = Method::Tiered},
           {.method = Method::Sphere, .epsilon = 1e-2},
           {.method = Method::Sphere, .precision = Precision::Double, .epsilon = 1e-4},
@@ -188,7 +188,7 @@ TEST_CASE("chart: errors are those to the reference, and thresholds show", "[cha
   const auto scene = scene_of(kGroundScene);
   const Field field = make_field(scene);
   const std::vector<RaySet> sets = make_ray_sets(scene, field, 400, 2);
-  const std::vector<RayMeasurement> rows = measure_rays(scene, field, sets, ways(), 2, "ground");
+  const std::vector<RayMeasurement> rows = measure_rays(scene, field, sets, variants(), 2, "ground");
   REQUIRE(rows.size() == 3 * kWays);
   for (std::size_t i = 0; i < sets.size(); ++i) {
     INFO(sets[i].ray_class);
@@ -206,10 +206,10 @@ TEST_CASE("chart: a ray without a true answer is nobody's failure", "[chart]") {
   // Passes an edge of the box at a distance below double precision.
   const glm::dvec3 along = glm::normalize(glm::dvec3(1, -1, 0)), edge(1 + 0x1p-43, 1 + 0x1p-43, 0.25);
   const std::vector<RaySet> sets = {{"touching", {{edge - 3.0 * along, along}}}};
-  REQUIRE(march(field, sets[0].rays, {.method = Method::Certified}).counters.contacts == 1);
-  const auto rows = measure_rays(scene, field, sets, ways(), 1, "box");
+  REQUIRE(march(field, sets[0].rays, {.method = Method::Certified}).counters.near_misses == 1);
+  const auto rows = measure_rays(scene, field, sets, variants(), 1, "box");
   REQUIRE(rows.size() == kWays);
-  CHECK(rows[kReference].contact_ppm == 1e6);
+  CHECK(rows[kReference].near_miss_ppm == 1e6);
   for (const RayMeasurement& row : rows) {
     INFO(row.method << " " << row.eps);
     CHECK(row.false_hit_ppm + row.false_miss_ppm + row.exhausted_ppm + row.gross_ppm == 0);
@@ -219,17 +219,17 @@ TEST_CASE("chart: a ray without a true answer is nobody's failure", "[chart]") {
 TEST_CASE("chart: small pictures against their reference", "[chart]") {
   const auto scene = scene_of(kGroundScene);
   const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 2, .reference_spp = 512};
-  const std::vector<ImageWay> ways = {{}, {.marching = {.method = Method::Sphere, .epsilon = 0.3}}};
+  const std::vector<ImageVariant> variants = {{}, {.marching = {.method = Method::Sphere, .epsilon = 0.3}}};
   cpu_set_t before, after;
   REQUIRE(sched_getaffinity(0, sizeof before, &before) == 0);
-  const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "ground");
+  const std::vector<ImageMeasurement> rows = measure_images(scene, variants, plan, "ground");
   REQUIRE(sched_getaffinity(0, sizeof after, &after) == 0);
   CHECK(CPU_EQUAL(&before, &after));
   REQUIRE(rows.size() == 4);  // two ways, 16 and 4 samples each
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ImageMeasurement& row = rows[i];
     CHECK(row.scene == "ground");
-    CHECK(row.method == info(ways[i / 2].marching.method).name);
+    CHECK(row.method == info(variants[i / 2].marching.method).name);
     CHECK(row.eps == (i < 2 ? 0 : 0.3));
     CHECK(row.spp == (i % 2 == 0 ? 16 : 4));
     CHECK(row.seeds == 2);
@@ -240,7 +240,7 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
   }
   CHECK(rows[0].relmse_p95 < rows[1].relmse_p05);  // four times the samples
   CHECK(rows[2].floor > 4 * rows[0].floor);        // the large epsilon thickens the ball and changes the image
-  const std::vector<ImageMeasurement> again = measure_images(scene, ways, plan, "ground");
+  const std::vector<ImageMeasurement> again = measure_images(scene, variants, plan, "ground");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CHECK(again[i].relmse_med == rows[i].relmse_med);
     CHECK(again[i].floor == rows[i].floor);
@@ -248,11 +248,11 @@ TEST_CASE("chart: small pictures against their reference", "[chart]") {
 }
 
 TEST_CASE("chart: samplers and ways to find light are told apart, and looking for lamps pays", "[chart]") {
-  const auto scene = scene_of(kLampScene);
+  const auto scene = scene_of(kAreaLightScene);
   const ImagePlan plan{.width = 8, .height = 8, .spp = 16, .seeds = 3, .reference_spp = 1024};
-  const std::vector<ImageWay> ways = {
+  const std::vector<ImageVariant> variants = {
       {}, {.sampler = compiler::SamplerKind::Independent, .light_sampling = LightSampling::Bsdf}};
-  const std::vector<ImageMeasurement> rows = measure_images(scene, ways, plan, "lamp");
+  const std::vector<ImageMeasurement> rows = measure_images(scene, variants, plan, "lamp");
   REQUIRE(rows.size() == 4);
   CHECK((rows[0].sampler == "blue" && rows[0].lights == "mis"));
   CHECK((rows[2].sampler == "independent" && rows[2].lights == "bsdf"));

@@ -10,19 +10,19 @@
 namespace fathom::runtime::chart_page_test {
 namespace {
 
-using tests::count_of;
-using tests::kProvenance;
-using tests::what_is_wrong;
+using test::count_of;
+using test::kProvenance;
+using test::what_is_wrong;
 
 Page sample_page() {
   Page page;
-  page.rays = tests::sample_rays();
+  page.rays = test::sample_rays();
   page.provenance = kProvenance;
   page.files = {"chart.csv", "images.csv"};
   PageScene scene{"composite", {}, {{"composite-evaluations.png", "Evaluations per pixel", "Brighter is more."}}};
   scene.charts = {{chart_a(page.rays, "composite", Cost::Time, kProvenance), kReadChartATime},
                   {chart_a(page.rays, "composite", Cost::Evaluations, kProvenance), kReadChartAEvaluations},
-                  {chart_b(tests::sample_images(), "composite", kProvenance), kReadChartB}};
+                  {chart_b(test::sample_images(), "composite", kProvenance), kReadChartB}};
   page.scenes = {scene};
   return page;
 }

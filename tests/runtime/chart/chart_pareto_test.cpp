@@ -64,7 +64,7 @@ TEST_CASE("chart pareto: only rows of one scene and class are compared", "[chart
 
 TEST_CASE("chart pareto: all kinds of failures count, contacts do not", "[chart]") {
   RayMeasurement of;
-  of.false_hit_ppm = 1, of.false_miss_ppm = 10, of.exhausted_ppm = 100, of.gross_ppm = 1000, of.contact_ppm = 1e4;
+  of.false_hit_ppm = 1, of.false_miss_ppm = 10, of.exhausted_ppm = 100, of.gross_ppm = 1000, of.near_miss_ppm = 1e4;
   CHECK(failures_ppm(of) == 1111);
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("chart pareto: the default is on the front where it is on the staircas
 }
 
 TEST_CASE("chart pareto: a verdict for each class that has the default", "[chart]") {
-  auto rows = tests::sample_rays();
+  auto rows = test::sample_rays();
   auto verdicts = judge_default(rows, "composite", Cost::Time);
   REQUIRE(verdicts.size() == 3);
   for (const FrontVerdict& verdict : verdicts) CHECK(verdict.on_front);
@@ -187,7 +187,7 @@ TEST_CASE("chart fit: points without a logarithm take no part, one x is not enou
 }
 
 TEST_CASE("chart fit: a curve for each method and eps", "[chart]") {
-  const auto curves = fit_curves(tests::sample_images());
+  const auto curves = fit_curves(test::sample_images());
   REQUIRE(curves.size() == 4);
   CHECK(curves[0].method == "tiered");
   CHECK(curves[0].slope == Approx(-1).margin(0.005));  // the floor bends the curve a little

@@ -10,16 +10,16 @@
 #include "runtime/chart/plot_svg.h"
 #include "tests/runtime/chart/svg_reading.h"
 #include "tests/runtime/cli/markup_check.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::chart_plot_test {
 namespace {
 
-using tests::circles;
-using tests::count_of;
-using tests::find_text;
-using tests::texts;
-using tests::what_is_wrong;
+using test::circles;
+using test::count_of;
+using test::find_text;
+using test::texts;
+using test::what_is_wrong;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -190,7 +190,7 @@ TEST_CASE("chart plot: points are where the ticks of their values are", "[chart]
   const char* y_labels[] = {"10^−2", "10^−4", "10^−6"};
   for (std::size_t i = 0; i < 3; ++i) {
     CAPTURE(i);
-    const tests::Text *x = find_text(words, x_labels[i]), *y = find_text(words, y_labels[i]);
+    const test::Text *x = find_text(words, x_labels[i]), *y = find_text(words, y_labels[i]);
     REQUIRE((x && y));
     CHECK(markers[i].x == Approx(x->x).margin(0.011));
     CHECK(markers[i].y == Approx(y->y - 4).margin(0.011));  // a text's baseline is below its middle
@@ -225,7 +225,7 @@ TEST_CASE("chart plot: zeros are diamonds in a slot, with a tick", "[chart]") {
   CHECK(circles(svg, "marker").size() == 3);
   CHECK(count_of(svg, "<path d=\"M") == count_of(without, "<path d=\"M") + 2);  // the diamond and its dotted line
   const auto words = texts(svg);
-  const tests::Text* zero = find_text(words, "0");
+  const test::Text* zero = find_text(words, "0");
   REQUIRE(zero != nullptr);
   CHECK(svg.find("Z\" class=\"marker\"") != std::string::npos);
   CHECK(zero->y > circles(svg, "marker")[1].y + 20);
@@ -301,7 +301,7 @@ TEST_CASE("chart plot: whatever the numbers and the words are, the text is well 
   const auto number = [&] {
     return random() < 0.15 ? odd[static_cast<int>(7 * random())] : std::pow(10.0, 10 * random() - 6);
   };
-  for (int round = 0; round < test::few(60); ++round) {
+  for (int round = 0; round < test::scaled_cases(60); ++round) {
     Plot plot = plot_of({});
     plot.title = "<&\"'>\x01";
     plot.footer = "a & b";

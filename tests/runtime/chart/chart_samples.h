@@ -7,7 +7,7 @@
 
 #include "runtime/chart/measurements.h"
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline const runtime::Provenance kProvenance{
     "0123abc", "Xeon, 2 cores", "g++ 12.2", "avx512", "2026-11-21", "fathom chart composite.json -o out", 9};
@@ -89,4 +89,4 @@ inline std::vector<runtime::ImageMeasurement> sample_images() {
   return rows;
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

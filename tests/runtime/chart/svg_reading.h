@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 inline std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t count = 0;
@@ -51,4 +51,4 @@ inline const Text* find_text(const std::vector<Text>& all, const std::string& wo
   return nullptr;
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

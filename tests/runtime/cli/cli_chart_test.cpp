@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::kBall;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::kBall;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 const char* const kFew = " --rays 100 --rounds 1";
 
@@ -224,11 +224,11 @@ TEST_CASE("cli: the closing numbers say how rays ended") {
     REQUIRE(result.code == 0);
     return result.out;
   };
-  for (const char* key : {"hits", "misses", "contacts", "clipped_rays"}) {
+  for (const char* key : {"hits", "misses", "near_misses", "clipped_rays"}) {
     CHECK_THAT(stats(""), Contains("\"" + std::string(key) + "\": "));
   }
   CHECK_THAT(stats(""),
-             Contains("\"contacts\": 0") && !Contains("\"misses\": 0") && !Contains("\"clipped_rays\": 0"));
+             Contains("\"near_misses\": 0") && !Contains("\"misses\": 0") && !Contains("\"clipped_rays\": 0"));
   CHECK_THAT(stats("--march sphere --max-steps 2"), !Contains("\"exhausted_rays\": 0"));
 }
 

@@ -11,8 +11,8 @@ namespace fathom::cli_check_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 const char* const kRope = R"({
   "version": 1, "background": [1, 1, 1],

@@ -8,8 +8,8 @@ namespace fathom::cli_convert_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 const char* const kPosts =
     "fathom 1\n// Posts in a row.\nparam n(min = 1, max = 9) = 3\nbackground [1, 1, 1]\n"

@@ -10,9 +10,9 @@ namespace fathom::cli_diff_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 // A portable float map of 2x1 pixels, little endian.
 std::string float_map(const std::vector<float>& values) {

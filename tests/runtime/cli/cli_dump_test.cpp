@@ -9,8 +9,8 @@ namespace fathom::cli_dump_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 }  // namespace
 

@@ -12,8 +12,8 @@ namespace fathom::cli_editor_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 }  // namespace
 

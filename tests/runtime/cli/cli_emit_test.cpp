@@ -4,7 +4,7 @@
 
 #include "tests/support/program.h"
 
-namespace fathom::tests::cli_emit_test {
+namespace fathom::test::cli_emit_test {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
@@ -51,4 +51,4 @@ TEST_CASE("emit says what it cannot do", "[cli][emit]") {
   refused("cpp bad.json", 65, "bad.json");
 }
 
-}  // namespace fathom::tests::cli_emit_test
+}  // namespace fathom::test::cli_emit_test

@@ -7,9 +7,9 @@ namespace fathom::cli_install_test {
 
 namespace {
 
-using fathom::tests::Folder;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 }  // namespace
 

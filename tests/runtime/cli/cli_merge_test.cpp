@@ -11,7 +11,7 @@ namespace fathom::cli_merge_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 TEST_CASE("cli merge: crops and sample ranges split at random are the whole render, with cmp") {

@@ -10,7 +10,7 @@ namespace fathom::cli_origin_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
+using fathom::test::Folder;
 
 // A ball of radius 0.5 over a floor, at x = 1e5.
 const char* const kFar = R"({

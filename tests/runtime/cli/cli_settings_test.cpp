@@ -13,7 +13,7 @@ namespace fathom::cli_settings_test {
 
 namespace {
 
-using tests::Folder;
+using test::Folder;
 
 // Renders the scene with these properties of its records `film` and `render`. Returns a row of the film's identity.
 std::optional<std::string> row_of(std::string_view row, const std::string& arguments, const std::string& film = "",
@@ -21,7 +21,7 @@ std::optional<std::string> row_of(std::string_view row, const std::string& argum
   const Folder folder;
   folder.write("a.json", R"({"version": 1, "film": {"width": 4, "height": 4)" + film + R"(}, "render": {"tile": 8)" +
                              render + R"(}, "objects": [{"type": "sphere", "radius": 1}]})");
-  const tests::Result result = folder.run("render a.json -q -o a.film " + arguments);
+  const test::Result result = folder.run("render a.json -q -o a.film " + arguments);
   INFO(result.err);
   REQUIRE(result.code == 0);
   const auto read = runtime::read_film((folder.path() / "a.film").string());
@@ -49,7 +49,7 @@ TEST_CASE("cli settings: an option and the scene's property change the film's ro
     using Setting = std::remove_cvref_t<decltype(setting)>;
     if (setting.identity.row.empty() || setting.option.names.empty()) return;
     CAPTURE(std::string(setting.name));
-    const std::string value = text_of(setting, tests::another_value(setting));
+    const std::string value = text_of(setting, test::another_value(setting));
     const std::string option(setting.option.names.substr(setting.option.names.rfind("--")));
     CHECK(row_of(setting.identity.row, "") != value);
     CHECK(row_of(setting.identity.row, option + "=" + value) == value);

@@ -10,10 +10,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::kBall;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::kBall;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 }  // namespace
 

@@ -8,10 +8,10 @@ namespace fathom::cli_watch_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::kBall;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::kBall;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 // A ball on a floor in soft light, so that the image is noisy.
 const char* const kNoisy = R"({

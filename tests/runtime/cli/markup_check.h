@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fathom::tests {
+namespace fathom::test {
 
 // Returns the first error, or an empty string. Knows the HTML elements without an end tag.
 inline std::string what_is_wrong(const std::string& markup) {
@@ -53,4 +53,4 @@ inline std::string what_is_wrong(const std::string& markup) {
   return open.empty() ? "" : "no end of " + open.back();
 }
 
-}  // namespace fathom::tests
+}  // namespace fathom::test

@@ -23,7 +23,7 @@ compiler::CompiledScene balls(double first, double light = 1) {
     objects += std::string(i > 0 ? "," : "") + R"({"type": "sphere", "radius": 0.3, "translate": [)" +
                std::to_string(x) + "," + std::to_string(i / 7 % 7) + "," + std::to_string(i / 49) + "]}";
   }
-  return tests::compiled(
+  return test::compiled(
       R"({"version": 1, "camera": {"position": [3, 3, 20], "target": [3, 3, 3]}, "film": {"width": 32, "height": 24},
     "render": {"spp": 16}, "background": [)" +
       std::to_string(light) + R"(, 1, 1], "objects": [)" + objects + "]}");
@@ -40,11 +40,11 @@ TEST_CASE("region store: the same program, box and options have the same regions
   RegionStore store;
   const auto first = store.build(a.surface, a.contents, options());
   REQUIRE(first);
-  CHECK_FALSE(store.kept(*first));
+  CHECK_FALSE(store.reused(*first));
   RegionOptions threads = options();
   threads.threads = 2;
   CHECK(store.build(same.surface, same.contents, threads) == first);
-  CHECK(store.kept(*first));
+  CHECK(store.reused(*first));
   CHECK(store.build(moved.surface, moved.contents, options()) != first);
   RegionOptions less = options();
   less.memory /= 2;
@@ -60,14 +60,14 @@ TEST_CASE("region store: what was not asked for is forgotten, and lives on with 
   {
     const compiler::CompiledScene a = balls(0), b = balls(0.1);
     first = store.build(a.surface, a.contents, options());
-    store.forget_unused();
+    store.drop_unused();
     CHECK(store.build(a.surface, a.contents, options()) == first);
-    store.forget_unused();
+    store.drop_unused();
     store.build(b.surface, b.contents, options());
-    store.forget_unused();
+    store.drop_unused();
     const auto again = store.build(a.surface, a.contents, options());
     CHECK(again != first);
-    CHECK_FALSE(store.kept(*again));
+    CHECK_FALSE(store.reused(*again));
   }
   // The scene's program no longer exists here: the regions use their own copy.
   runtime::RealScratch scratch;
@@ -95,12 +95,12 @@ TEST_CASE("region store: a render with kept regions has the bits of one without,
   options.region_store = std::make_shared<RegionStore>();
   const runtime::RenderResult built = runtime::render(first, options);
   REQUIRE(built.stats.region_bytes > 0);
-  CHECK(built.stats.regions_kept == 0);
-  const runtime::RenderResult kept = runtime::render(other_light, options);
-  CHECK(kept.stats.regions_kept == 1);
-  CHECK(kept.stats.region_seconds == 0);
-  CHECK(kept.stats.region_bytes == built.stats.region_bytes);
-  CHECK(kept.film.hash() == wanted);
+  CHECK(built.stats.regions_reused == 0);
+  const runtime::RenderResult reused = runtime::render(other_light, options);
+  CHECK(reused.stats.regions_reused == 1);
+  CHECK(reused.stats.region_seconds == 0);
+  CHECK(reused.stats.region_bytes == built.stats.region_bytes);
+  CHECK(reused.film.hash() == wanted);
 }
 
 }  // namespace

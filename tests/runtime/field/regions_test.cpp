@@ -18,7 +18,7 @@
 #include "runtime/path/surface.h"
 #include "runtime/render.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"
@@ -113,14 +113,14 @@ Differences compare(const vm::VerifiedProgram& program, const Regions& regions, 
   vm::Workspace workspace;
   RegionScratch scratch;
   RealScratch real_scratch;
-  std::vector<float> whole(kMostPoints), level(kMostPoints), cut(kMostPoints);
-  vm::evaluate_distance(program, at.points(), kMostPoints, whole.data(), workspace);
+  std::vector<float> whole(kMaxPoints), level(kMaxPoints), cut(kMaxPoints);
+  vm::evaluate_distance(program, at.points(), kMaxPoints, whole.data(), workspace);
   level = whole;
-  regions.far_levels().apply(at.points(), kMostPoints, level.data());
-  regions.evaluate(at.points(), kMostPoints, cut.data(), scratch, workspace);
+  regions.far_levels().apply(at.points(), kMaxPoints, level.data());
+  regions.evaluate(at.points(), kMaxPoints, cut.data(), scratch, workspace);
   Differences found;
   const auto same = [](auto a, auto b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-  for (std::size_t i = 0; i < kMostPoints; ++i) {
+  for (std::size_t i = 0; i < kMaxPoints; ++i) {
     const glm::dvec3 p(static_cast<double>(at.x[i]), static_cast<double>(at.y[i]), static_cast<double>(at.z[i]));
     std::uint64_t instructions = 0;
     const double real = regions.far_levels()(vm::evaluate_distance(program, p, workspace), at.x[i], at.y[i], at.z[i]);
@@ -139,12 +139,12 @@ Differences compare(const vm::VerifiedProgram& program, const Regions& regions, 
 TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float and in double", "[regions]") {
   for (const bool blend : {false, true}) {
     for (const bool ground : {false, true}) {
-      const compiler::CompiledScene scene = tests::compiled(many(400, blend, ground, true));
+      const compiler::CompiledScene scene = test::compiled(many(400, blend, ground, true));
       const Field field = with_regions(scene);
       Differences all;
-      for (int seed = 0; seed < test::few(24); ++seed) {
+      for (int seed = 0; seed < test::scaled_cases(24); ++seed) {
         // Inside, around, and far outside.
-        const Sample at = sample(kMostPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
+        const Sample at = sample(kMaxPoints, seed % 3 == 0 ? 1.1 : seed % 3 == 1 ? 3 : 40, seed);
         const Differences some = compare(scene.distance, *field.regions, at);
         all.single += some.single, all.real += some.real;
         all.exact += some.exact, all.rounded += some.rounded, all.far += some.far;
@@ -152,34 +152,34 @@ TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float
       INFO("blended " << blend << ", on a ground " << ground);
       CHECK(all.single == 0);
       CHECK(all.real == 0);
-      CHECK(all.exact > static_cast<std::size_t>(test::few(1000)));
-      CHECK(all.rounded > static_cast<std::size_t>(test::few(1000)));
-      CHECK(all.far > static_cast<std::size_t>(test::few(100)));
+      CHECK(all.exact > static_cast<std::size_t>(test::scaled_cases(1000)));
+      CHECK(all.rounded > static_cast<std::size_t>(test::scaled_cases(1000)));
+      CHECK(all.far > static_cast<std::size_t>(test::scaled_cases(100)));
     }
   }
 }
 
 TEST_CASE("regions: random scenes of every kind of node are cut without a wrong value", "[regions]") {
   std::size_t built = 0, wrong = 0, rounded = 0;
-  for (int seed = 0; seed < test::few(60); ++seed) {
+  for (int seed = 0; seed < test::scaled_cases(60); ++seed) {
     Random random(seed);
     test::GraphOptions options;
     options.depth = 5;
     const compiler::Scene scene = test::random_scene(random, options);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     const auto fused = vm::verify(compiler::fuse(test::plain_lowering(scene).program()));
     const auto& program = std::get<vm::VerifiedProgram>(fused);
     const bool bounded = known.box.finite() && !known.box.empty();
     const compiler::Box box = bounded ? known.box : compiler::Box::centred(glm::dvec3(3));
     if (!(known.lipschitz > 0) || box.hi.x - box.lo.x > 1e3) continue;
     const auto regions = Regions::build(
-        program, box, {.always = true, .room = bounded ? 0 : 3, .magnitude = static_cast<float>(known.magnitude)});
+        program, box, {.always = true, .room = bounded ? 0 : 3, .cancellation = static_cast<float>(known.cancellation)});
     if (!regions) continue;
     ++built;
     for (const double reach : {1.05, 8.0}) {  // some points lie outside
-      Sample at = sample(kMostPoints, reach, seed);
+      Sample at = sample(kMaxPoints, reach, seed);
       const glm::dvec3 middle = (box.lo + box.hi) / 2.0, half = (box.hi - box.lo) / 2.0;
-      for (std::size_t i = 0; i < kMostPoints; ++i) {
+      for (std::size_t i = 0; i < kMaxPoints; ++i) {
         at.x[i] = static_cast<float>(middle.x) + at.x[i] * static_cast<float>(half.x);
         at.y[i] = static_cast<float>(middle.y) + at.y[i] * static_cast<float>(half.y);
         at.z[i] = static_cast<float>(middle.z) + at.z[i] * static_cast<float>(half.z);
@@ -192,12 +192,12 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
     }
   }
   CHECK(wrong == 0);
-  CHECK(built > static_cast<std::size_t>(test::few(40)));
-  CHECK(rounded > static_cast<std::size_t>(test::few(1000)));
+  CHECK(built > static_cast<std::size_t>(test::scaled_cases(40)));
+  CHECK(rounded > static_cast<std::size_t>(test::scaled_cases(1000)));
 }
 
 TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
+  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
   const Field field = with_regions(scene);
   const Sample at = sample(40000, 1.1, 3);
   vm::Workspace workspace;
@@ -223,8 +223,8 @@ TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]"
 }
 
 TEST_CASE("regions: the same tree for any number of threads, the same values on every instruction set", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, false, false));
-  const Sample at = sample(kMostPoints, 1.1, 5);
+  const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
+  const Sample at = sample(kMaxPoints, 1.1, 5);
   std::vector<std::uint32_t> expected;
   const std::string before(vm::isa_name());
   for (const std::string_view isa : vm::available_isas()) {
@@ -233,12 +233,12 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
       const Field field = with_regions(scene, {.threads = threads});
       vm::Workspace workspace;
       RegionScratch scratch;
-      std::vector<float> values(kMostPoints);
-      field.regions->evaluate(at.points(), kMostPoints, values.data(), scratch, workspace);
+      std::vector<float> values(kMaxPoints);
+      field.regions->evaluate(at.points(), kMaxPoints, values.data(), scratch, workspace);
       std::vector<std::uint32_t> bits;
       for (const float value : values) bits.push_back(std::bit_cast<std::uint32_t>(value + 0.0f));
-      const Regions::Facts& facts = field.regions->facts();
-      for (const std::size_t n : {facts.far, facts.programs, facts.skeletons, facts.bytes}) {
+      const Regions::Summary& summary = field.regions->summary();
+      for (const std::size_t n : {summary.far, summary.programs, summary.program_templates, summary.bytes}) {
         bits.push_back(static_cast<std::uint32_t>(n));
       }
       if (expected.empty()) expected = bits;
@@ -250,22 +250,22 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
 }
 
 TEST_CASE("regions: stay within the memory they are given", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, false, false));
-  const std::size_t freely = with_regions(scene).regions->facts().bytes;
+  const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
+  const std::size_t freely = with_regions(scene).regions->summary().bytes;
   std::size_t built = 0;
   for (const std::size_t share : {1, 2, 4, 8, 64}) {
     Field field = make_field(scene);
     add_regions(field, scene, {.memory = freely / share});
     if (!field.regions) continue;
     ++built;
-    CHECK(field.regions->facts().bytes <= freely / share);
+    CHECK(field.regions->summary().bytes <= freely / share);
   }
   CHECK(built >= 2);
   CHECK(built < 5);
 }
 
 TEST_CASE("regions: building them stops where it is told to", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, false, false));
+  const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   for (const int threads : {1, 3}) {
     std::atomic<int> asked = 0;
     RegionOptions options{.threads = threads};
@@ -278,7 +278,7 @@ TEST_CASE("regions: building them stops where it is told to", "[regions]") {
 }
 
 TEST_CASE("regions: a small picture is not worth building them", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, false, false));
+  const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   Field field = make_field(scene);
   add_regions(field, scene, {.evaluations = 1000});
   CHECK_FALSE(field.regions);
@@ -287,11 +287,11 @@ TEST_CASE("regions: a small picture is not worth building them", "[regions]") {
 }
 
 TEST_CASE("regions: rays meet what they meet without them, to the bit", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
+  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
   const Field cut = with_regions(scene), whole = make_field(scene);
   Random random(11);
   std::vector<Ray> rays;
-  for (int i = 0; i < test::few(10000); ++i) {
+  for (int i = 0; i < test::scaled_cases(10000); ++i) {
     rays.push_back({random.in_box(1.5), random.direction()});
   }
   for (const Method method : {Method::Tiered, Method::Sphere}) {
@@ -320,8 +320,8 @@ RenderOptions part_of_picture() {
 // more. Images with large regions, small ones and none were different.
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
           "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
-  const std::size_t freely = with_regions(scene).regions->facts().bytes;
+  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
+  const std::size_t freely = with_regions(scene).regions->summary().bytes;
   RenderOptions options = part_of_picture();
   options.regions = false;
   const std::uint64_t expected = render(scene, options).film.hash();
@@ -346,7 +346,7 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
 // Regression: a time limit did not stop the building of regions, which takes up to half a minute. Another limit gave
 // other regions, so a resumed render counted other costs.
 TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[regions]") {
-  const compiler::CompiledScene scene = tests::compiled(many(400, true, true, true));
+  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
   RenderOptions options = part_of_picture();
   const RenderResult freely = render(scene, options);
   options.time_limit = 1000;
@@ -361,12 +361,12 @@ TEST_CASE("regions: a limit of time ends building them, except where costs are k
 // Regression: building took ten times the allowed memory. A cell keeps its pruned program until the cell is split,
 // and in a wide scene each cell of the first levels keeps most of the program.
 TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions][released]") {
-  const compiler::CompiledScene scene = tests::compiled(grid(100));
+  const compiler::CompiledScene scene = test::compiled(grid(100));
   const auto facts_of = [&](std::size_t memory) {
     const auto regions = Regions::build(scene.surface, scene.contents, {.memory = memory});
-    return regions ? regions->facts() : Regions::Facts{};
+    return regions ? regions->summary() : Regions::Summary{};
   };
-  const Regions::Facts freely = facts_of(64u << 20), less = facts_of(freely.building * 3 / 4);
+  const Regions::Summary freely = facts_of(64u << 20), less = facts_of(freely.building * 3 / 4);
   CHECK(freely.bytes > 0);
   CHECK((less.bytes > 0 && less.bytes <= freely.bytes));
   CHECK(facts_of(freely.building / 2 - 1).bytes == 0);
@@ -374,7 +374,7 @@ TEST_CASE("regions: scenes that take many times their memory to build have none"
 
 TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[regions]") {
   const auto regions_of = [](const std::string& text) {
-    const compiler::CompiledScene scene = tests::compiled(text);
+    const compiler::CompiledScene scene = test::compiled(text);
     Field field = make_field(scene);
     add_regions(field, scene, {});
     return field.regions != nullptr;

@@ -13,7 +13,7 @@
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::adaptive_test {
 namespace {
@@ -80,14 +80,14 @@ TEST_CASE("adaptive: each half is judged by the other, and by samples that no me
   state.tiles.resize(1);
   put(film, 0, [](int) { return 0.0f; });  // half 0 is below the threshold: 1 ends
   put(film, 1, [](int) { return 0.9f; });  // half 1 is above the threshold: 0 goes on
-  judge(film, 2, 0.1, state);
+  test_convergence(film, 2, 0.1, state);
   CHECK(state.tiles[0].ends == Ends{0, 2});
   // Further samples of half 1 decide when half 0 ends.
   for (int i = 0; i < 200; ++i)
     put(
         film, 1, [](int) { return 0.0f; }, 1);
   CHECK(film.means(3, 3).samples == 2);
-  judge(film, 402, 0.1, state);
+  test_convergence(film, 402, 0.1, state);
   CHECK(state.tiles[0].ends == Ends{402, 2});
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("adaptive: shares use up the budget, by the root of the other half's d
   // By half 0 the left of the image has a quarter of the deviation of the right; by half 1 all of it is alike.
   put(film, 0, [](int x) { return x < 48 ? 0.1f : 0.4f; });
   put(film, 1, [](int) { return 0.2f; });
-  assign_shares(film, 64, 0, state);
+  allocate_samples(film, 64, 0, state);
   std::uint32_t sums[2] = {0, 0};
   for (const AdaptiveTile& tile : state.tiles) {
     for (std::size_t half = 0; half < 2; ++half) sums[half] += tile.ends[half];
@@ -112,13 +112,13 @@ TEST_CASE("adaptive: no share is below half or above four times the average, or 
   Film film(16 * 40, 16, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(40)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int x) { return x >= 304 && x < 336 ? 0.99f : 1e-4f; });
-  assign_shares(film, 64, 0, state);
+  allocate_samples(film, 64, 0, state);
   for (const AdaptiveTile& tile : state.tiles) {
     for (const std::uint32_t end : tile.ends) CHECK((end >= 32 && end <= 256));
   }
   CHECK(state.tiles[19].ends == Ends{256, 256});
   AdaptiveState late{60, std::vector<AdaptiveTile>(40)};
-  assign_shares(film, 64, 0, late);
+  allocate_samples(film, 64, 0, late);
   CHECK(late.tiles[0].ends[0] >= 60);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("adaptive: a share is no larger than the threshold asks for") {
   AdaptiveState state{2, std::vector<AdaptiveTile>(4)};
   // The variance of the mean of two samples is 0.01: the noise is 0.1, and 4 times as many samples halve it.
   const double noise = noise_of(film, {0, 0, 16, 16}, 0);
-  assign_shares(film, 64, noise / 2, state);
+  allocate_samples(film, 64, noise / 2, state);
   for (const AdaptiveTile& tile : state.tiles) CHECK((tile.ends[0] == 8 && tile.ends[1] == 8));
 }
 
@@ -137,7 +137,7 @@ TEST_CASE("adaptive: without noise all pixels have the same number") {
   Film film(64, 32, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(8)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int) { return 0.0f; });
-  assign_shares(film, 16, 0, state);
+  allocate_samples(film, 16, 0, state);
   for (const AdaptiveTile& tile : state.tiles) CHECK(tile.ends == Ends{16, 16});
 }
 
@@ -184,14 +184,14 @@ TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance the
     return options;
   };
   RenderOptions options = uniform(options_of(LightSampling::Nee));
-  options.spp = test::few(512);
+  options.spp = test::scaled_cases(512);
   const Film truth = render(scene, options).film;
   options = options_of(LightSampling::Bsdf);
   const Tiles tiles({0, 0, 64, 48}, 8);
   std::vector<Sum> cells(48);
   Sum pixel;
   double said = 0;
-  const int seeds = test::few(200);
+  const int seeds = test::scaled_cases(200);
   for (int seed = 0; seed < seeds; ++seed) {
     options.seed = static_cast<std::uint64_t>(seed) + 1;
     const Film film = render(scene, options).film;
@@ -212,7 +212,7 @@ TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance the
 }
 
 // A floor lit by a small bright lamp that few paths hit.
-compiler::CompiledScene floor_and_lamp() {
+compiler::CompiledScene floor_and_area_light() {
   return scene_of(
       R"("camera": {"position": [0, 1, 0.5], "target": [0, 0, 0], "fov": 60}, "background": [0.2, 0.2, 0.2],
       "materials": {"floor": {"type": "diffuse", "color": [0.5, 0.5, 0.5]},
@@ -223,16 +223,16 @@ compiler::CompiledScene floor_and_lamp() {
 
 // As a control, stopping by the samples that are kept is biased.
 TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][heavy]") {
-  const auto scene = floor_and_lamp();
+  const auto scene = floor_and_area_light();
   constexpr double kThreshold = 0.25;
   constexpr int kMost = 256;
-  RenderOptions options = uniform(adaptive_options(8, 8, test::few(40000)));
+  RenderOptions options = uniform(adaptive_options(8, 8, test::scaled_cases(40000)));
   options.max_depth = 1;
   options.light_sampling = LightSampling::Nee;
   const PixelRect area{0, 0, 8, 8};
   const double expected = mean_of(render(scene, options).film, area).y;
   Sum ours, naive, samples;
-  for (int seed = 0; seed < test::few(2000); ++seed) {
+  for (int seed = 0; seed < test::scaled_cases(2000); ++seed) {
     options.light_sampling = LightSampling::Bsdf;
     options.seed = static_cast<std::uint64_t>(seed) + 1;
     options.threads = 1;
@@ -325,9 +325,9 @@ TEST_CASE("adaptive: quiet tiles end early, and a render below its threshold say
 TEST_CASE("adaptive: with too few samples to share out all pixels have as many", "[render]") {
   const auto scene = floor_and_sky();
   RenderOptions options = adaptive_options(16, 16, kMinAdaptiveSpp - 1);
-  const RenderResult few = render(scene, options);
-  CHECK_FALSE(few.settings.noise_threshold);
-  CHECK(few.film.hash() == render(scene, uniform(options)).film.hash());
+  const RenderResult scaled_cases = render(scene, options);
+  CHECK_FALSE(scaled_cases.settings.noise_threshold);
+  CHECK(scaled_cases.film.hash() == render(scene, uniform(options)).film.hash());
   options = adaptive_options(16, 16, kMinAdaptiveSpp);
   CHECK(render(scene, options).settings.noise_threshold);
   options.uniform = true;
@@ -351,7 +351,7 @@ TEST_CASE("adaptive: an interrupted render goes on to the same bits", "[render][
       int units = 0;
       stopping.on_progress = [&](const Progress&) { cancel = ++units >= stop; };
       const RenderResult stopped = render(scene, stopping);
-      after_judgement += stopped.adaptive.judged > 0 && stopped.stats.end == RenderEnd::Cancelled;
+      after_judgement += stopped.adaptive.tested_spp > 0 && stopped.stats.end == RenderEnd::Cancelled;
       RenderOptions going_on = options;
       REQUIRE(can_resume(stopped, stopped.settings));
       going_on.resume_from = std::make_shared<PartialRender>(stopped);
@@ -389,11 +389,11 @@ TEST_CASE("adaptive: a caustic has less error than with as many samples everywhe
                   {"type": "sphere", "radius": 0.5, "translate": [-2, 6, 0], "material": "lamp"}])");
   RenderOptions options = adaptive_options(128, 80, 32);
   RenderOptions truth_options = uniform(options);
-  truth_options.spp = test::few(4096);
+  truth_options.spp = test::scaled_cases(4096);
   truth_options.seed = 999;
   const Film truth = render(scene, truth_options).film;
   double adaptive = 0, even = 0;
-  for (int seed = 0; seed < test::few(8); ++seed) {
+  for (int seed = 0; seed < test::scaled_cases(8); ++seed) {
     options.seed = static_cast<std::uint64_t>(seed);
     adaptive += relative_error(render(scene, options).film, truth);
     even += relative_error(render(scene, uniform(options)).film, truth);

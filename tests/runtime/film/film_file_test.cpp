@@ -57,7 +57,7 @@ FilmLayers every_layer() {
 }
 
 TEST_CASE("film files: what is written is read back, with every layer or none, of one stage or four") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   for (const FilmLayers layers : {FilmLayers{}, every_layer(), FilmLayers{.first_hit = false, .halves = true}}) {
     for (const bool adaptive : {false, true}) {
       const FilmFile wrote = small_file(layers, adaptive);
@@ -82,7 +82,7 @@ TEST_CASE("film files: what is written is read back, with every layer or none, o
 }
 
 TEST_CASE("film files: every flipped bit and every truncation is found") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const FilmFile wrote = small_file(every_layer(), true);
   const std::string path = folder.file("a.film");
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, path));
@@ -107,7 +107,7 @@ TEST_CASE("film files: every flipped bit and every truncation is found") {
 
 // Heads forged to make the reader fail, with checksums that fit.
 TEST_CASE("film files: a head that makes no sense is refused although its checksum fits") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, path));
@@ -124,7 +124,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
     file.append(reinterpret_cast<const char*>(&digest.high), 8);
     write_bytes(path, file + bytes.substr(20 + size + 16));
     const auto read = read_film(path);
-    if (const auto* unread = std::get_if<UnreadFilm>(&read)) {
+    if (const auto* unread = std::get_if<FilmReadError>(&read)) {
       REQUIRE_FALSE(unread->missing);
     } else {
       ++accepted;  // the change was a name, a value or another valid number
@@ -146,7 +146,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
 
 // A scene's names can have any length.
 TEST_CASE("film files: what can be written can be read, however long") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
   const std::string text(std::size_t{3} << 20, 'x');
@@ -158,34 +158,34 @@ TEST_CASE("film files: what can be written can be read, however long") {
   CHECK((std::get<FilmFile>(read).header.identity == wrote.header.identity));
   CHECK((std::get<FilmFile>(read).header.attributes == wrote.header.attributes));
   const auto small = read_film(path, {1 << 20});
-  CHECK(std::get<UnreadFilm>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
+  CHECK(std::get<FilmReadError>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
 }
 
 TEST_CASE("film files: more rows of an identity than are ever written are refused") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   wrote.header.identity.assign(10000, {"", ""});
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
   const auto read = read_film_header(folder.file("a.film"));
-  REQUIRE(std::holds_alternative<UnreadFilm>(read));
-  CHECK(std::get<UnreadFilm>(read).problem.find("head makes no sense") != std::string::npos);
+  REQUIRE(std::holds_alternative<FilmReadError>(read));
+  CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
 TEST_CASE("film files: what a head becomes is counted before it is made") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   for (int i = 0; i < 10000; ++i) wrote.header.attributes[std::to_string(i)] = 0;
   REQUIRE_FALSE(write_film(wrote.header, wrote.render, folder.file("a.film")));
   CHECK(std::holds_alternative<FilmFile>(read_film_header(folder.file("a.film"), {3e6})));
-  CHECK(std::holds_alternative<UnreadFilm>(read_film_header(folder.file("a.film"), {1.4e6})));
+  CHECK(std::holds_alternative<FilmReadError>(read_film_header(folder.file("a.film"), {1.4e6})));
   std::string bytes = bytes_of(folder.file("a.film"));
   bytes[15] ^= 1;  // a byte of the head's length
   write_bytes(folder.file("a.film"), bytes);
-  CHECK(std::get<UnreadFilm>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
+  CHECK(std::get<FilmReadError>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
 }
 
 TEST_CASE("film files: sums that take more memory than is allowed are not read") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string path = folder.file("a.film");
   const FilmFile wrote = small_file({});
   PartialRender large{Film(200, 100, FilmLayers{}), std::vector<Coverage>(1), {}};
@@ -194,13 +194,13 @@ TEST_CASE("film files: sums that take more memory than is allowed are not read")
   header.height = 100;
   REQUIRE_FALSE(write_film(header, large, path));
   CHECK(std::holds_alternative<FilmFile>(read_film(path, {2e6})));
-  CHECK(std::holds_alternative<UnreadFilm>(read_film(path, {1e6})));
+  CHECK(std::holds_alternative<FilmReadError>(read_film(path, {1e6})));
   CHECK(std::holds_alternative<FilmFile>(read_film_header(path, {1e6})));
 }
 
 // The reader checks the blocks for overlaps without tidying them, which would take quadratic time.
 TEST_CASE("film files: blocks that overlap are refused as fast as they are read") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   FilmHeader header = small_file({}).header;
   header.width = header.height = 300;
   PartialRender render{Film(300, 300, FilmLayers{}), std::vector<Coverage>(1), {}};
@@ -212,22 +212,22 @@ TEST_CASE("film files: blocks that overlap are refused as fast as they are read"
   const auto start = std::chrono::steady_clock::now();
   const auto read = read_film(folder.file("a.film"));
   CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
-  CHECK(std::get<UnreadFilm>(read).problem.find("head makes no sense") != std::string::npos);
+  CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
 TEST_CASE("film files: what is no film, or not there, is said to be so") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write_bytes(folder.file("a.film"), "{\"version\": 1}                 ");
   const auto other = read_film(folder.file("a.film"));
-  REQUIRE(std::holds_alternative<UnreadFilm>(other));
-  CHECK_FALSE(std::get<UnreadFilm>(other).missing);
-  CHECK(std::get<UnreadFilm>(other).problem.find("does not begin as one") != std::string::npos);
-  CHECK(std::get<UnreadFilm>(other).foreign);
+  REQUIRE(std::holds_alternative<FilmReadError>(other));
+  CHECK_FALSE(std::get<FilmReadError>(other).missing);
+  CHECK(std::get<FilmReadError>(other).problem.find("does not begin as one") != std::string::npos);
+  CHECK(std::get<FilmReadError>(other).not_a_film);
   write_bytes(folder.file("a.film"), "FATHOMFM");
-  CHECK_FALSE(std::get<UnreadFilm>(read_film(folder.file("a.film"))).foreign);
+  CHECK_FALSE(std::get<FilmReadError>(read_film(folder.file("a.film"))).not_a_film);
   const auto missing = read_film(folder.file("b.film"));
-  CHECK(std::get<UnreadFilm>(missing).missing);
-  CHECK(std::get<UnreadFilm>(read_film(folder.path().string())).missing);
+  CHECK(std::get<FilmReadError>(missing).missing);
+  CHECK(std::get<FilmReadError>(read_film(folder.path().string())).missing);
 }
 
 TEST_CASE("film files: what renders differ in is named") {

@@ -36,8 +36,8 @@ double grey_flip(double a, double b) {
   };
   // L*a*b* of sRGB's green and blue: (87.735, -86.183, 83.179), (32.297, 79.188, -107.860). The Hunt adjustment
   // scales a and b by L/100.
-  const double most_a = 0.87735 * -86.183 - 0.32297 * 79.188, most_b = 0.87735 * 83.179 + 0.32297 * 107.860;
-  const double most = std::pow(87.735 - 32.297 + std::hypot(most_a, most_b), 0.7);
+  const double max_a = 0.87735 * -86.183 - 0.32297 * 79.188, max_b = 0.87735 * 83.179 + 0.32297 * 107.860;
+  const double most = std::pow(87.735 - 32.297 + std::hypot(max_a, max_b), 0.7);
   const double error = std::pow(std::abs(lightness(a) - lightness(b)), 0.7);
   if (error < 0.4 * most) return 0.95 / (0.4 * most) * error;
   return 0.95 + (error - 0.4 * most) / (0.6 * most) * 0.05;

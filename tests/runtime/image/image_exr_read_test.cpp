@@ -21,15 +21,15 @@ namespace {
 constexpr int kWidth = 37, kHeight = 131, kX = -5, kY = 3;
 
 // The same numbers in every sample type. Half is as exact as the others below 2^11.
-struct Samples {
+struct FieldSamples {
   std::vector<half> halves;
   std::vector<float> floats;
   std::vector<unsigned> wholes;
 };
 
-Samples random_samples() {
+FieldSamples random_samples() {
   test::Random random(5);
-  Samples samples;
+  FieldSamples samples;
   for (int i = 0; i < kWidth * kHeight; ++i) {
     const int value = random.chance(0.5) ? i % 64 : random.below(2048);
     samples.halves.emplace_back(static_cast<float>(value));
@@ -48,7 +48,7 @@ Imf::Slice slice_of(Imf::PixelType type, std::vector<T>& values) {
 enum class Storage { Lines, Tiles, Mipmap };
 
 void write(const std::string& path, Storage storage, Imf::Compression compression, Imf::LineOrder order,
-           Samples& samples) {
+           FieldSamples& samples) {
   Imf::Header header(Imath::Box2i({0, 0}, {99, 199}), Imath::Box2i({kX, kY}, {kX + kWidth - 1, kY + kHeight - 1}));
   header.compression() = compression;
   header.lineOrder() = order;
@@ -74,8 +74,8 @@ void write(const std::string& path, Storage storage, Imf::Compression compressio
 }
 
 TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compression", "[runtime]") {
-  const tests::TemporaryFolder folder;
-  Samples samples = random_samples();
+  const test::TemporaryFolder folder;
+  FieldSamples samples = random_samples();
   for (const Storage storage : {Storage::Lines, Storage::Tiles, Storage::Mipmap}) {
     for (const Imf::Compression compression :
          {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
@@ -101,8 +101,8 @@ TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compress
 }
 
 TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "[runtime]") {
-  const tests::TemporaryFolder folder;
-  Samples samples = random_samples();
+  const test::TemporaryFolder folder;
+  FieldSamples samples = random_samples();
   const auto problem_of = [&](const std::vector<std::uint8_t>& bytes) {
     const auto read = decode_exr(bytes);
     REQUIRE(std::holds_alternative<std::string>(read));

@@ -44,7 +44,7 @@ Film varied_film() {
 }
 
 TEST_CASE("image_exr: every channel of a film comes back, at its place in the picture", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const Film film = varied_film();
   const glm::dvec3 origin{1000, 0, -5};
   const ImageRows rows = rows_of(film, 50, 60, origin, {});
@@ -87,7 +87,7 @@ TEST_CASE("image_exr: layers that a film does not keep are not there", "[runtime
 }
 
 TEST_CASE("image_exr: an image read and written again has the same bytes", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const Film film = varied_film();
   Attributes attributes = {{"samplesPerPixel", 3}, {"a.float", 0.5f}, {"a.text", std::string("word")}};
   attributes["a.list"] = std::vector<std::string>{"one", "", "three"};
@@ -110,7 +110,7 @@ TEST_CASE("image_exr: an image read and written again has the same bytes", "[run
 }
 
 TEST_CASE("image_exr: what is cut short or no picture is refused with a reason", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const Film film(4, 4);
   REQUIRE(write_exr(rows_of(film, 4, 4, glm::dvec3(0), {}), folder.file("a.exr")) == std::nullopt);
   std::vector<std::uint8_t> bytes = read(folder.file("a.exr"));
@@ -125,7 +125,7 @@ TEST_CASE("image_exr: what is cut short or no picture is refused with a reason",
 }
 
 TEST_CASE("image_exr: a file that cannot be written leaves nothing", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const Film film(4, 4);
   const ImageRows rows = rows_of(film, 4, 4, glm::dvec3(0), {});
   CHECK(write_exr(rows, folder.file("none/a.exr"))->find("No such file") != std::string::npos);

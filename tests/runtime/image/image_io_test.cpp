@@ -10,8 +10,8 @@
 namespace fathom::runtime::image_io_test {
 namespace {
 
-Picture gradient(int width, int height) {
-  Picture picture{width, height, {}};
+ByteImage gradient(int width, int height) {
+  ByteImage picture{width, height, {}};
   for (int i = 0; i < width * height * 3; ++i) picture.rgb.push_back(static_cast<std::uint8_t>(i));
   return picture;
 }
@@ -35,8 +35,8 @@ TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
 }
 
 TEST_CASE("image_io: each file has its format's header, and the size", "[runtime]") {
-  const tests::TemporaryFolder folder;
-  const Picture picture = gradient(7, 5);
+  const test::TemporaryFolder folder;
+  const ByteImage picture = gradient(7, 5);
   CHECK(write_image(picture, folder.file("a.png")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.jpg")) == std::nullopt);
   CHECK(write_image(picture, folder.file("a.bmp")) == std::nullopt);
@@ -52,7 +52,7 @@ TEST_CASE("image_io: each file has its format's header, and the size", "[runtime
 }
 
 TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   CHECK(write_image(gradient(2, 2), folder.file("none/a.png")).has_value());
   CHECK(write_image(gradient(2, 2), folder.file("a.gif")).has_value());
   std::filesystem::create_directory(folder.file("b.png"));
@@ -61,7 +61,7 @@ TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtim
 }
 
 TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   REQUIRE(write_image(gradient(2, 2), folder.file("a.bmp")) == std::nullopt);
   REQUIRE(write_image(gradient(4, 4), folder.file("a.bmp")) == std::nullopt);
   CHECK(folder.files() == 1);
@@ -69,7 +69,7 @@ TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
 }
 
 TEST_CASE("image_io: a float map holds the values, the lowest row first", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::vector<float> values = {1, -2.5f, 0, 1e-3f, 1e9f, std::numeric_limits<float>::infinity()};
   REQUIRE(write_float_map(values, 3, 2, folder.file("a.PFM")) == std::nullopt);
   const std::string bytes = read(folder.file("a.PFM")), header = "Pf\n3 2\n-1.0\n";

@@ -61,8 +61,8 @@ TEST_CASE("image_jpeg: baseline and progressive, grey and coloured", "[runtime]"
     for (const int components : {1, 3}) {
       CAPTURE(kind, components);
       const auto read = decode_jpeg(encoded(components, components == 1 ? JCS_GRAYSCALE : JCS_RGB, kind), kMemory);
-      REQUIRE(std::holds_alternative<JpegPicture>(read));
-      const auto& picture = std::get<JpegPicture>(read);
+      REQUIRE(std::holds_alternative<JpegImage>(read));
+      const auto& picture = std::get<JpegImage>(read);
       REQUIRE(picture.width == kSide);
       REQUIRE(picture.height == kSide);
       REQUIRE(picture.components == components);

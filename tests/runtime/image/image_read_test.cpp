@@ -31,7 +31,7 @@ Film ramp() {
 }
 
 // Returns the largest error of channels R, G, B of a layer that was written and read.
-double error_of(const tests::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
+double error_of(const test::TemporaryFolder& folder, const std::string& name, Layer layer, int bits = 8) {
   const Film film = ramp();
   const LayerValues values = layer_of(film, layer);
   REQUIRE(write_layer(values, {{}, bits}, folder.file(name)) == std::nullopt);
@@ -54,7 +54,7 @@ double error_of(const tests::TemporaryFolder& folder, const std::string& name, L
 }
 
 TEST_CASE("image_read: what is written comes back as exactly as its format says", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   // Half a step of 8 or 16 bits, times the steepest slope of the sRGB decoding, 2.3 at white.
   CHECK(error_of(folder, "a.png", Layer::Beauty) <= 2.3 / 255 / 2);
   CHECK(error_of(folder, "b.png", Layer::Beauty, 16) <= 2.3 / 65535 / 2 + 1e-7);
@@ -68,8 +68,8 @@ TEST_CASE("image_read: what is written comes back as exactly as its format says"
 }
 
 TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
-  const tests::TemporaryFolder folder;
-  Picture picture{256, 1, {}};
+  const test::TemporaryFolder folder;
+  ByteImage picture{256, 1, {}};
   for (int i = 0; i < 256; ++i) picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(i));
   for (const char* name : {"a.png", "a.bmp"}) {
     REQUIRE(write_image(picture, folder.file(name)) == std::nullopt);
@@ -89,15 +89,15 @@ std::string bytes_of(std::string_view digits) {
   return bytes;
 }
 
-FloatImage image_of(const tests::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
+FloatImage image_of(const test::TemporaryFolder& folder, std::string_view name, std::string_view digits) {
   std::ofstream(folder.file(std::string(name)), std::ios::binary) << bytes_of(digits);
   const auto read = read_image(folder.file(std::string(name)));
-  if (const auto* unread = std::get_if<UnreadImage>(&read)) FAIL(unread->problem);
+  if (const auto* unread = std::get_if<ImageReadError>(&read)) FAIL(unread->problem);
   return std::get<FloatImage>(read);
 }
 
 TEST_CASE("image_read: every kind of png", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   using Values = std::vector<std::vector<float>>;
   CHECK(image_of(
             folder, "grey-of-1-bit.png",
@@ -129,12 +129,12 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
 
 // libpng accepts the first three as whole images and leaves the pixels without data black.
 TEST_CASE("image_read: a png whose data ends before its picture is refused", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto problem_of = [&](std::string_view digits) {
     std::ofstream(folder.file("a.png"), std::ios::binary) << bytes_of(digits);
     const auto read = read_image(folder.file("a.png"));
-    REQUIRE(std::holds_alternative<UnreadImage>(read));
-    return std::get<UnreadImage>(read).problem;
+    REQUIRE(std::holds_alternative<ImageReadError>(read));
+    return std::get<ImageReadError>(read).problem;
   };
   const std::string_view
       half =
@@ -161,7 +161,7 @@ TEST_CASE("image_read: a png whose data ends before its picture is refused", "[r
 
 // R, G and B are each a copy of grey.
 TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string png = bytes_of(
       "89504e470d0a1a0a0000000d4948445200000003000000010100000000339b29190000000a4944415478da6358000000a200a1"
       "7105cb410000000049454e44ae426082");
@@ -172,12 +172,12 @@ TEST_CASE("image_read: the memory of a grey picture is counted before it is take
        {std::pair{"a.png", png.size() + 3 * (2 + 12)}, {"a.pfm", pfm.size() + 3 * (4 + 12)}}) {
     INFO(name);
     CHECK(std::holds_alternative<FloatImage>(read_image(folder.file(name), {static_cast<double>(needed)})));
-    CHECK(std::holds_alternative<UnreadImage>(read_image(folder.file(name), {static_cast<double>(needed) - 1})));
+    CHECK(std::holds_alternative<ImageReadError>(read_image(folder.file(name), {static_cast<double>(needed) - 1})));
   }
 }
 
 TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   std::ofstream(folder.file("a.pfm"), std::ios::binary)
       << "PF\n1 2\n1.0\n"
       << std::string("\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 24);
@@ -188,14 +188,14 @@ TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
 }
 
 TEST_CASE("image_read: what cannot be read is refused with its name and a reason", "[runtime]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const auto problem = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder.file(name), std::ios::binary) << text;
     const auto read = read_image(folder.file(name));
-    REQUIRE(std::holds_alternative<UnreadImage>(read));
-    CHECK_FALSE(std::get<UnreadImage>(read).missing);
-    CHECK(std::get<UnreadImage>(read).problem.find(name) != std::string::npos);
-    return std::get<UnreadImage>(read).problem;
+    REQUIRE(std::holds_alternative<ImageReadError>(read));
+    CHECK_FALSE(std::get<ImageReadError>(read).missing);
+    CHECK(std::get<ImageReadError>(read).problem.find(name) != std::string::npos);
+    return std::get<ImageReadError>(read).problem;
   };
   for (const char* name : {"a.png", "a.jpg", "a.bmp", "a.exr", "a.pfm", "a.hdr"}) {
     problem(name, "");
@@ -216,12 +216,12 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
   CHECK(problem("c.pfm", "PF\n2000000 2000000\n-1.0\n1234").find("too large") != std::string::npos);
   CHECK(problem("d.pfm", "PF\n-2 2\n-1.0\n1234").find("header") != std::string::npos);
   const auto missing = read_image(folder.file("none.png"));
-  REQUIRE(std::holds_alternative<UnreadImage>(missing));
-  CHECK(std::get<UnreadImage>(missing).missing);
-  CHECK(std::get<UnreadImage>(missing).problem.find("No such file") != std::string::npos);
+  REQUIRE(std::holds_alternative<ImageReadError>(missing));
+  CHECK(std::get<ImageReadError>(missing).missing);
+  CHECK(std::get<ImageReadError>(missing).problem.find("No such file") != std::string::npos);
   std::filesystem::create_directory(folder.file("folder.png"));
-  CHECK(std::get<UnreadImage>(read_image(folder.file("folder.png"))).missing);
-  CHECK(std::get<UnreadImage>(read_image("folder/.")).problem.find("format") != std::string::npos);
+  CHECK(std::get<ImageReadError>(read_image(folder.file("folder.png"))).missing);
+  CHECK(std::get<ImageReadError>(read_image("folder/.")).problem.find("format") != std::string::npos);
 }
 
 }  // namespace

@@ -28,11 +28,11 @@ Film three_pixels() {
 
 TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[runtime]") {
   const Film film = three_pixels();
-  CHECK(layer_picture(film, Layer::Beauty).rgb[0] == 137);       // 0.25
-  CHECK(layer_picture(film, Layer::Beauty, {1}).rgb[0] == 188);  // 0.5
-  CHECK(layer_picture(film, Layer::Beauty, {2}).rgb[0] == 255);  // 1
-  CHECK(layer_picture(film, Layer::Beauty, {10}).rgb[0] == 255);
-  CHECK(layer_picture(film, Layer::Beauty, {10}).rgb[6] == 0);
+  CHECK(layer_image(film, Layer::Beauty).rgb[0] == 137);       // 0.25
+  CHECK(layer_image(film, Layer::Beauty, {1}).rgb[0] == 188);  // 0.5
+  CHECK(layer_image(film, Layer::Beauty, {2}).rgb[0] == 255);  // 1
+  CHECK(layer_image(film, Layer::Beauty, {10}).rgb[0] == 255);
+  CHECK(layer_image(film, Layer::Beauty, {10}).rgb[6] == 0);
 }
 
 TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[runtime]") {
@@ -43,7 +43,7 @@ TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[ru
     sample.radiance = glm::vec3(static_cast<float>(i) / (kSide * kSide - 1));
     film.add(i % kSide, i / kSide, sample);
   }
-  const Picture picture = layer_picture(film, Layer::Beauty);
+  const ByteImage picture = layer_image(film, Layer::Beauty);
   int wrong = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
     const double light = film.means(i % kSide, i / kSide).radiance.x;
@@ -55,8 +55,8 @@ TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[ru
 
 TEST_CASE("image: what lies first along the ray", "[runtime]") {
   const Film film = three_pixels();
-  const Picture albedo = layer_picture(film, Layer::Albedo), normal = layer_picture(film, Layer::Normal),
-                depth = layer_picture(film, Layer::Depth);
+  const ByteImage albedo = layer_image(film, Layer::Albedo), normal = layer_image(film, Layer::Normal),
+                depth = layer_image(film, Layer::Depth);
   CHECK(albedo.rgb == std::vector<std::uint8_t>{255, 0, 188, 255, 0, 188, 0, 0, 0});
   CHECK(normal.rgb == std::vector<std::uint8_t>{128, 255, 128, 128, 255, 128, 0, 0, 0});
   CHECK(depth.rgb == std::vector<std::uint8_t>{255, 255, 255, 128, 128, 128, 0, 0, 0});
@@ -70,7 +70,7 @@ TEST_CASE("image: 16 bits are the nearest word, and 8 bits the same picture", "[
     sample.radiance = glm::vec3(static_cast<float>(i) / (kWidth - 1));
     film.add(i, 0, sample);
   }
-  const Shown shown(layer_of(film, Layer::Beauty), {1, ToneCurve::Filmic});
+  const DisplayImage shown(layer_of(film, Layer::Beauty), {1, ToneCurve::Filmic});
   std::vector<std::uint16_t> words(3 * kWidth);
   std::vector<std::uint8_t> bytes(3 * kWidth);
   shown.row(0, words);
@@ -96,7 +96,7 @@ TEST_CASE("image: a part of a picture is shown as that part", "[runtime]") {
       if (x >= 2 && x < 7 && y >= 1 && y < 5) part.add(x, y, sample);
     }
   }
-  const Picture all = layer_picture(whole, Layer::Beauty), some = layer_picture(part, Layer::Beauty);
+  const ByteImage all = layer_image(whole, Layer::Beauty), some = layer_image(part, Layer::Beauty);
   REQUIRE(some.width == 5);
   REQUIRE(some.height == 4);
   for (std::size_t y = 0; y < 4; ++y) {

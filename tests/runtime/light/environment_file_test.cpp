@@ -15,14 +15,14 @@ namespace {
 
 std::string reason(const std::string& path) {
   const auto read = read_environment(path);
-  const auto* why = std::get_if<UnreadImage>(&read);
+  const auto* why = std::get_if<ImageReadError>(&read);
   return why ? why->problem : "";
 }
 
 void write(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 TEST_CASE("environment file: a Radiance picture", "[lights]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string path = folder.file("sky.HDR");
   // Two pixels without run-length encoding: (1, 0.5, 0.25) and (16, 0, 32), as mantissas / 256 times 2^(e - 128).
   const unsigned char pixels[] = {128, 64, 32, 129, 64, 0, 128, 134};
@@ -37,7 +37,7 @@ TEST_CASE("environment file: a Radiance picture", "[lights]") {
 }
 
 TEST_CASE("environment file: an OpenEXR picture, and what is no radiance in it", "[lights]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   const std::string path = folder.file("sky.exr");
   FloatImage written;
   written.width = 3, written.height = 2;
@@ -56,7 +56,7 @@ TEST_CASE("environment file: an OpenEXR picture, and what is no radiance in it",
 }
 
 TEST_CASE("environment file: bad files say why", "[lights]") {
-  const tests::TemporaryFolder folder;
+  const test::TemporaryFolder folder;
   write(folder.file("a.hdr"), "no picture");
   write(folder.file("b.exr"), "no picture");
   CHECK(reason(folder.file("a.hdr")).find("begin") != std::string::npos);

@@ -9,7 +9,7 @@
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"
 
@@ -18,9 +18,9 @@ namespace {
 
 using test::kPicture, test::kSky, test::random_image;
 
-const LightQuery kUp{{0, 0, 0}, {0, 1, 0}};
-const LightQuery kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
-const LightQuery kBoth{{0, 0, 0}, {0, 0, 1}, true};
+const LightSampleContext kUp{{0, 0, 0}, {0, 1, 0}};
+const LightSampleContext kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
+const LightSampleContext kBoth{{0, 0, 0}, {0, 0, 1}, true};
 
 compiler::CompiledScene scene_with(const std::string& settings) {
   return scene_of(settings + R"(, "objects": [{"type": "sphere", "radius": 1}])");
@@ -33,7 +33,7 @@ glm::vec3 direction_at(double y, double turn) {
 }
 
 // Checks that sampled directions follow pdf() and that pdf() integrates to 1. Discs are left out of both.
-void check_density(const Environment& environment, const LightQuery& query) {
+void check_density(const Environment& environment, const LightSampleContext& query) {
   constexpr int kRows = 16, kColumns = 16, kGrid = 24;
   std::vector<double> expected(kRows * kColumns), counts(kRows * kColumns);
   double mass = 0;
@@ -46,7 +46,7 @@ void check_density(const Environment& environment, const LightQuery& query) {
     }
   }
   CHECK(mass == Approx(1).epsilon(0.01));
-  const int n = test::few(40000);
+  const int n = test::scaled_cases(40000);
   for (int i = 0; i < n; ++i) {
     Sampler sampler(5, static_cast<std::uint32_t>(i), 0, 0);
     const float choice = sampler.next();
@@ -63,7 +63,7 @@ void check_density(const Environment& environment, const LightQuery& query) {
 struct Mean {
   double value, error;
 };
-Mean irradiance(const Environment& environment, const LightQuery& query, int n) {
+Mean irradiance(const Environment& environment, const LightSampleContext& query, int n) {
   double sum = 0, squares = 0;
   for (int i = 0; i < n; ++i) {
     Sampler sampler(6, static_cast<std::uint32_t>(i), 0, 0);
@@ -82,7 +82,7 @@ Mean irradiance(const Environment& environment, const LightQuery& query, int n) 
 TEST_CASE("environment: directions fall as their density says", "[lights]") {
   const Environment sky(scene_with(kSky), nullptr);
   const Environment picture(scene_with(kPicture), random_image(12, 6));
-  for (const LightQuery& query : {kUp, kAside, kBoth}) {
+  for (const LightSampleContext& query : {kUp, kAside, kBoth}) {
     check_density(sky, query);
     check_density(picture, query);
   }
@@ -91,7 +91,7 @@ TEST_CASE("environment: directions fall as their density says", "[lights]") {
 TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
   const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
   CHECK(!gradient.emits());  // a gradient has no sampler: only hits find its light
-  CHECK(gradient.estimate(kUp) == 0);
+  CHECK(gradient.importance(kUp) == 0);
   auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
   const Environment picture(scene_with(kPicture), white);
   const Mean of_white = irradiance(picture, kAside, 40000);
@@ -165,12 +165,12 @@ TEST_CASE("environment: rays that hit a small disc find its irradiance", "[light
 TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[lights]") {
   const Environment lit(scene_with(disc_of(10)), nullptr);
   test::ChiSquareSetup setup;
-  setup.samples = test::few(100000);
+  setup.samples = test::scaled_cases(100000);
   // The pole points at the disc's centre and the rows span 5 degrees: the disc's rim is a cell border.
   setup.pole = glm::normalize(glm::vec3(1, 2, 1));
   setup.rows = 36;
   setup.columns = 72;
-  for (const LightQuery& query : {kUp, kBoth}) {
+  for (const LightSampleContext& query : {kUp, kBoth}) {
     const auto sample = [&](Sampler& s) {
       const float choice = s.next();
       return lit.sample(query, choice, s.next2());
@@ -206,7 +206,7 @@ TEST_CASE("environment: a sky with its sun is sampled without bias", "[lights]")
 TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[lights]") {
   const Environment dark(scene_with(R"("film": {})"), nullptr);
   CHECK_FALSE(dark.emits());
-  CHECK(dark.estimate(kUp) == 0);
+  CHECK(dark.importance(kUp) == 0);
   CHECK(dark.pdf(kUp, {0, 1, 0}) == 0);
 }
 

@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
-#include "tests/support/lamp_patches.h"
+#include "tests/support/scaled_cases.h"
+#include "tests/support/area_light_patches.h"
 
 namespace fathom::runtime::light_shapes_test {
 namespace {
 
-using compiler::Lamp;
+using compiler::AreaLight;
 using glm::dvec3;
 using test::ball, test::quad, test::round;
 
 // Returns the first point of a ray within 1e-10 of the area light. Area lights are convex, and so is the distance
 // along a ray: the secant through two of its values reaches 0 before the distance does.
-std::optional<dvec3> meet(const LampShape& shape, dvec3 from, dvec3 w) {
+std::optional<dvec3> meet(const AreaLightShape& shape, dvec3 from, dvec3 w) {
   double t = std::max(0.0, glm::length(shape.centre() - from) - shape.radius() * 1.001);
   const double end = glm::length(shape.centre() - from) + shape.radius() * 1.001;
   double before = INFINITY, step = 0;
@@ -37,25 +37,25 @@ std::optional<dvec3> meet(const LampShape& shape, dvec3 from, dvec3 w) {
 }
 
 TEST_CASE("light shapes: points fall as their density says", "[lights]") {
-  const int n = test::few(40000);
-  for (const test::NamedLamp& c : test::kLamps) {
-    const LampShape shape(c.lamp);
-    for (const dvec3 from : test::kLampPlaces) {
-      const test::ChiSquare result = test::lamp_chi_square(shape, from, n, 16);
+  const int n = test::scaled_cases(40000);
+  for (const test::NamedAreaLight& c : test::kAreaLights) {
+    const AreaLightShape shape(c.area_light);
+    for (const dvec3 from : test::kShadingPoints) {
+      const test::ChiSquare result = test::area_light_chi_square(shape, from, n, 16);
       CAPTURE(c.name, from.x, result.describe());
       CHECK(result.integral < 1.005);
-      CHECK(result.integral > (c.lamp.shape == Lamp::Shape::Capsule ? 0.5 : 0.995));
+      CHECK(result.integral > (c.area_light.shape == AreaLight::Shape::Capsule ? 0.5 : 0.995));
       CHECK(result.p > test::sidak(0.001, 44));
     }
   }
 }
 
 TEST_CASE("light shapes: a sample's density is the density of hitting it, and it is seen", "[lights]") {
-  for (const test::NamedLamp& c : test::kLamps) {
-    const LampShape shape(c.lamp);
-    for (const dvec3 from : test::kLampPlaces) {
+  for (const test::NamedAreaLight& c : test::kAreaLights) {
+    const AreaLightShape shape(c.area_light);
+    for (const dvec3 from : test::kShadingPoints) {
       int good = 0;
-      double worst = 0, off = 0, least_facing = 1, unseen = 0;
+      double worst = 0, off = 0, min_facing = 1, unseen = 0;
       for (std::uint32_t i = 0; i < 500; ++i) {
         Sampler sampler(2, i, 0, 0);
         const ShapeSample s = shape.sample(from, sampler.next2());
@@ -64,7 +64,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
         worst = std::max(worst, std::abs(shape.pdf(from, s.position) / s.pdf - 1));
         off = std::max(off, shape.distance(s.position));
         const dvec3 w = glm::normalize(s.position - from);
-        least_facing = std::min(least_facing, -glm::dot(w, s.normal));
+        min_facing = std::min(min_facing, -glm::dot(w, s.normal));
         const std::optional<dvec3> hit = meet(shape, from, w);
         unseen += !hit || glm::length(*hit - s.position) > 1e-4 * (1 + shape.radius() / -glm::dot(w, s.normal));
       }
@@ -72,32 +72,32 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
       CHECK(good > 150);
       CHECK(worst < 1e-6);
       CHECK(off < 1e-6);
-      CHECK(least_facing > -1e-6);
+      CHECK(min_facing > -1e-6);
       CHECK(unseen <= 2);  // rounding near an edge
     }
   }
 }
 
 TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[lights]") {
-  for (const test::NamedLamp& c : test::kLamps) {
-    const LampShape shape(c.lamp);
+  for (const test::NamedAreaLight& c : test::kAreaLights) {
+    const AreaLightShape shape(c.area_light);
     CAPTURE(c.name);
     CHECK(shape.sample(shape.centre(), {0.3f, 0.6f}).pdf == 0);
   }
-  const LampShape sheet(quad(0.1, 0));
-  CHECK(sheet.sample(sheet.centre() + 3.0 * sheet.lamp().rotation[0], {0.5f, 0.5f}).pdf == 0);
+  const AreaLightShape sheet(quad(0.1, 0));
+  CHECK(sheet.sample(sheet.centre() + 3.0 * sheet.area_light().rotation[0], {0.5f, 0.5f}).pdf == 0);
   const dvec3 front = sheet.centre() + 2.0 * sheet.normal();
   CHECK(sheet.pdf(front, sheet.centre() + 0.1 * sheet.normal()) > 0);
   CHECK(sheet.pdf(front, sheet.centre() - 0.1 * sheet.normal()) == 0);
   // Only hits find the sheet's rounded edge.
-  CHECK(sheet.pdf(front, sheet.centre() + 1.05 * sheet.lamp().rotation[0] + std::sqrt(0.0075) * sheet.normal()) == 0);
+  CHECK(sheet.pdf(front, sheet.centre() + 1.05 * sheet.area_light().rotation[0] + std::sqrt(0.0075) * sheet.normal()) == 0);
 }
 
 // Irradiance by sampling for radiance 1, with its standard error.
 struct Mean {
   double value, error;
 };
-Mean irradiance(const LampShape& shape, dvec3 place, dvec3 normal, int n) {
+Mean irradiance(const AreaLightShape& shape, dvec3 place, dvec3 normal, int n) {
   double sum = 0, squares = 0;
   for (int i = 0; i < n; ++i) {
     Sampler sampler(3, static_cast<std::uint32_t>(i), 0, 0);
@@ -112,7 +112,7 @@ Mean irradiance(const LampShape& shape, dvec3 place, dvec3 normal, int n) {
 }
 
 TEST_CASE("light shapes: P3, a ball gives pi L R^2/d^2 cos", "[lights]") {
-  const LampShape shape(ball(0.5));
+  const AreaLightShape shape(ball(0.5));
   for (const double d : {1.5, 3.0, 40.0}) {
     const dvec3 w = glm::normalize(dvec3(0.2, 1, -0.4)), place = shape.centre() - d * w;
     const dvec3 normal = glm::normalize(w + 0.4 * glm::cross(w, dvec3(1, 0, 0)));
@@ -125,8 +125,8 @@ TEST_CASE("light shapes: P3, a ball gives pi L R^2/d^2 cos", "[lights]") {
 }
 
 TEST_CASE("light shapes: P4, a coaxial disc gives pi L R^2/(R^2 + h^2)", "[lights]") {
-  const LampShape shape(round(Lamp::Shape::Cylinder, 0.8, 1e-9));
-  const dvec3 axis = shape.lamp().rotation[1];
+  const AreaLightShape shape(round(AreaLight::Shape::Cylinder, 0.8, 1e-9));
+  const dvec3 axis = shape.area_light().rotation[1];
   for (const double h : {0.5, 2.0}) {
     const Mean e = irradiance(shape, shape.centre() - h * axis, axis, 100000);
     const double truth = M_PI * 0.64 / (0.64 + h * h);
@@ -138,15 +138,15 @@ TEST_CASE("light shapes: P4, a coaxial disc gives pi L R^2/(R^2 + h^2)", "[light
 
 TEST_CASE("light shapes: P5, polygons give Lambert's sum over edges", "[lights]") {
   for (const double skew : {0.0, 0.7}) {
-    const LampShape shape(quad(1e-9, skew));
-    const Lamp& lamp = shape.lamp();
+    const AreaLightShape shape(quad(1e-9, skew));
+    const AreaLight& area_light = shape.area_light();
     for (const dvec3 local : {dvec3(0.2, 0.1, 1), dvec3(0.9, -0.6, 0.3), dvec3(0.3, 1.5, -2)}) {
-      const dvec3 place = lamp.rotation * local + lamp.translation;
+      const dvec3 place = area_light.rotation * local + area_light.translation;
       const dvec3 normal = (local.z > 0 ? -1.0 : 1.0) * shape.normal();
       double truth = 0;
       for (std::size_t i = 0; i < 4; ++i) {
-        const dvec3 a = glm::normalize(dvec3(lamp.corners[i], 0) - local);
-        const dvec3 b = glm::normalize(dvec3(lamp.corners[(i + 1) % 4], 0) - local);
+        const dvec3 a = glm::normalize(dvec3(area_light.corners[i], 0) - local);
+        const dvec3 b = glm::normalize(dvec3(area_light.corners[(i + 1) % 4], 0) - local);
         truth += 0.5 * std::acos(glm::dot(a, b)) * glm::dot(glm::normalize(glm::cross(a, b)), dvec3(0, 0, 1));
       }
       truth = std::abs(truth);

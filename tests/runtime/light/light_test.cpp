@@ -11,7 +11,7 @@
 #include "runtime/base/color.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::light_test {
 namespace {
@@ -32,13 +32,13 @@ const std::string kRoom = R"(
     {"name": "can", "type": "cylinder", "radius": 0.4, "half_height": 0.2, "translate": [-1, 0, -3], "material": "glow"},)" +
                           kFloor;
 
-LightSample sample(const Lights& lights, const LightQuery& query, std::uint32_t i) {
+LightSample sample(const Lights& lights, const LightSampleContext& query, std::uint32_t i) {
   Sampler sampler(4, i, 0, 0);
   const float choice = sampler.next();
   return lights.sample(query, choice, sampler.next2());
 }
 
-const LightQuery kQueries[] = {{{0, -4.9, 0}, {0, 1, 0}},
+const LightSampleContext kQueries[] = {{{0, -4.9, 0}, {0, 1, 0}},
                                {{0.5, 0.2, 0.4}, {0.6f, 0.8f, 0}},
                                {{-2, 3, 2}, {0, 0, 1}, true},
                                {{20, 3, 30}, {-0.6f, 0, -0.8f}}};
@@ -47,7 +47,7 @@ const LightQuery kQueries[] = {{{0, -4.9, 0}, {0, 1, 0}},
 struct Mean {
   double value, error;
 };
-Mean irradiance(const Lights& lights, const LightQuery& query, int n) {
+Mean irradiance(const Lights& lights, const LightSampleContext& query, int n) {
   double sum = 0, squares = 0;
   for (int i = 0; i < n; ++i) {
     const LightSample s = sample(lights, query, static_cast<std::uint32_t>(i));
@@ -66,9 +66,9 @@ TEST_CASE("lights: a sample's density is that of the hit or of the background", 
       scene_with(R"(, "background": {"type": "sky", "elevation": 40, "strength": 0.3},
                     "lights": {"sun": {"type": "directional", "direction": [1, -2, 0], "angle": 2}})",
                  kRoom);
-  REQUIRE(scene.lamps.size() == 5);
+  REQUIRE(scene.area_lights.size() == 5);
   const Lights lights(scene);
-  for (const LightQuery& query : kQueries) {
+  for (const LightSampleContext& query : kQueries) {
     int near = 0, beyond = 0;
     double worst = 0;
     for (std::uint32_t i = 0; i < 2000; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("lights: a sample's density is that of the hit or of the background", 
         const glm::dvec3 hit = query.position + s.distance * glm::dvec3(s.wi);
         pdf = lights.pdf_of_hit(query, s.surface, hit);
         // wi is in float: at the very edge of a face the hit can lie on the next face.
-        if (pdf == 0 || s.lamp_cosine < 0.01f) continue;
+        if (pdf == 0 || s.light_cosine < 0.01f) continue;
         CHECK(s.radiance == glm::vec3(scene.materials[s.material].emission));
         CHECK(scene.surfaces[s.surface].material == s.material);
       }
@@ -104,7 +104,7 @@ TEST_CASE("lights: P3, the irradiance of a ball", "[lights]") {
   const compiler::CompiledScene scene =
       scene_with("", R"({"type": "sphere", "radius": 0.5, "translate": [0, 3, 1], "material": "glow"},)" + kFloor);
   const Lights lights(scene);
-  const LightQuery query{{0.5, 0, 0}, {0, 1, 0}};
+  const LightSampleContext query{{0.5, 0, 0}, {0, 1, 0}};
   const double d2 = 0.25 + 9 + 1, truth = M_PI * 2 * 0.25 / d2 * (3 / std::sqrt(d2));
   const Mean e = irradiance(lights, query, 20000);
   CHECK(std::abs(e.value - truth) < 4 * e.error);
@@ -118,12 +118,12 @@ TEST_CASE("lights: many lamps give the sum of each", "[lights]") {
                          i % 10 - 4.5, 2 + i % 3, i / 10 - 4.5);
   }
   const compiler::CompiledScene scene = scene_with("", balls + kFloor);
-  REQUIRE(scene.lamps.size() == 100);
+  REQUIRE(scene.area_lights.size() == 100);
   const Lights lights(scene);
   for (const glm::dvec3 place : {glm::dvec3(0, 0, 0), glm::dvec3(4.4, 1.5, 4.3)}) {
     double truth = 0;
-    for (const compiler::Lamp& lamp : scene.lamps) {
-      const glm::dvec3 way = lamp.translation - place;
+    for (const compiler::AreaLight& area_light : scene.area_lights) {
+      const glm::dvec3 way = area_light.translation - place;
       truth += M_PI * 2 * 0.01 / glm::dot(way, way) * (way.y / glm::length(way));
     }
     const Mean e = irradiance(lights, {place, {0, 1, 0}}, 20000);
@@ -134,8 +134,8 @@ TEST_CASE("lights: many lamps give the sum of each", "[lights]") {
 }
 
 TEST_CASE("lights: point, spot and directional lights are exact", "[lights]") {
-  const LightQuery below{{0, 0, 0}, {0, 1, 0}};
-  const auto only = [&](const std::string& light, const LightQuery& query) {
+  const LightSampleContext below{{0, 0, 0}, {0, 1, 0}};
+  const auto only = [&](const std::string& light, const LightSampleContext& query) {
     const compiler::CompiledScene scene = scene_with(R"(, "lights": {"it": )" + light + "}", kFloor);
     return sample(Lights(scene), query, 1);
   };
@@ -172,7 +172,7 @@ TEST_CASE("lights: lights of all kinds together give the sum of each", "[lights]
   const Lights lights(scene);
   const double ball = M_PI * 2 * 0.25 / 14 * (3 / std::sqrt(14.0)), point = 5.0 / 17 * (4 / std::sqrt(17.0));
   const double truth = ball + point + 0.5 + std::sqrt(0.5);
-  const Mean e = irradiance(lights, {{0, 0, 0}, {0, 1, 0}}, test::few(100000));
+  const Mean e = irradiance(lights, {{0, 0, 0}, {0, 1, 0}}, test::scaled_cases(100000));
   CAPTURE(e.value, truth, e.error);
   CHECK(std::abs(e.value - truth) < 4 * e.error);
 }
@@ -185,15 +185,15 @@ TEST_CASE("lights: what cannot be sampled has no density", "[lights]") {
       {"type": "subtraction", "of": [{"type": "sphere", "radius": 1, "translate": [4, 0, 0]},
                                      {"type": "box", "half_size": [1, 1, 1], "translate": [4, 1, 0]}]}]},)" +
                          kFloor);
-  REQUIRE(scene.lamps.size() == 1);
+  REQUIRE(scene.area_lights.size() == 1);
   const Lights lights(scene);
-  const LightQuery query{{2, -4, 0}, {0, 1, 0}};
-  CHECK(lights.pdf_of_hit(query, scene.lamps[0].surface, {0, -1, 0}) > 0);
-  CHECK(lights.pdf_of_hit(query, scene.lamps[0].surface, {4, -1, 0}) == 0);
-  CHECK(lights.pdf_of_hit(query, scene.lamps[0].surface + 1, {0, -1, 0}) == 0);
+  const LightSampleContext query{{2, -4, 0}, {0, 1, 0}};
+  CHECK(lights.pdf_of_hit(query, scene.area_lights[0].surface, {0, -1, 0}) > 0);
+  CHECK(lights.pdf_of_hit(query, scene.area_lights[0].surface, {4, -1, 0}) == 0);
+  CHECK(lights.pdf_of_hit(query, scene.area_lights[0].surface + 1, {0, -1, 0}) == 0);
   CHECK(lights.pdf_of_background(query, {0, 1, 0}) == 0);
   // The query is inside the ball.
-  CHECK(lights.pdf_of_hit({{0, 0, 0}, {0, 1, 0}}, scene.lamps[0].surface, {0, -1, 0}) == 0);
+  CHECK(lights.pdf_of_hit({{0, 0, 0}, {0, 1, 0}}, scene.area_lights[0].surface, {0, -1, 0}) == 0);
 }
 
 TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
@@ -202,9 +202,9 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
       {"type": "box", "half_size": [2, 0.1, 0.5], "translate": [0, 3, 0], "material": "glow"},
       {"type": "box", "half_size": [0.5, 0.1, 2], "translate": [0, 3, 0], "material": "glow"},)" +
                                                            kFloor);
-  REQUIRE(scene.lamps.size() == 2);
+  REQUIRE(scene.area_lights.size() == 2);
   const Lights lights(scene);
-  const LightQuery query{{0.1, 0, 0.2}, {0, 1, 0}};
+  const LightSampleContext query{{0.1, 0, 0.2}, {0, 1, 0}};
   // Lambert's formula, summed over small areas of the cross. The boxes' sides face away from the point below, or
   // nearly.
   double truth = 0;
@@ -217,7 +217,7 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
       truth += 2 * y * y / (d2 * d2) * 16 / (kSteps * kSteps);
     }
   }
-  const Mean e = irradiance(lights, query, test::few(60000));
+  const Mean e = irradiance(lights, query, test::scaled_cases(60000));
   CAPTURE(e.value, truth, e.error);
   CHECK(std::abs(e.value - truth) < 4 * e.error + 1e-3 * truth);
   // The error is small enough to detect the middle being counted twice.

@@ -7,14 +7,14 @@
 #include "runtime/render.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/light_scenes.h"
 #include "tests/support/white_furnace.h"
 
 namespace fathom::runtime::light_transport_test {
 namespace {
 
-using tests::LightScene;
+using test::LightScene;
 
 RenderOptions square(int side, int spp) {
   RenderOptions options;
@@ -34,19 +34,19 @@ void expect(const LightScene& scene, RenderOptions options, double error) {
   const Estimate found = estimate(result.film);
   INFO(scene.name << ": " << found.mean << " +- " << found.sigma << ", in closed form " << scene.radiance);
   CHECK(std::abs(found.mean - scene.radiance) <= 4 * found.sigma + 2e-5 * scene.radiance);
-  CHECK(found.sigma <= error * std::sqrt(64.0 / test::few(64)) * scene.radiance);  // fewer samples under sanitizers
+  CHECK(found.sigma <= error * std::sqrt(64.0 / test::scaled_cases(64)) * scene.radiance);  // fewer samples under sanitizers
   CHECK(result.stats.march.invalid + result.stats.dropped_samples == 0);
 }
 
 TEST_CASE("light: closed rooms, however paths end", "[render][light][released]") {
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (const int bounces : {0, 2, 5}) {
-      RenderOptions options = square(24, test::few(64));
+      RenderOptions options = square(24, test::scaled_cases(64));
       options.rr_depth = bounces;
-      expect(tests::closed_room(albedo), options, 2e-2);
+      expect(test::closed_room(albedo), options, 2e-2);
     }
   }
-  expect(tests::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, test::few(64)), 2e-2);
+  expect(test::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, test::scaled_cases(64)), 2e-2);
 }
 
 TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
@@ -56,21 +56,21 @@ TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][lig
                                // too much.
                                R"({"type": "principled", "transmission": 1, "roughness": 0, "opacity": 0.5})"}) {
     for (const LightSampling way : kEveryWay) {
-      RenderOptions options = square(16, test::few(64));
+      RenderOptions options = square(16, test::scaled_cases(64));
       options.light_sampling = way;
-      expect(tests::in_even_light(material), options, 1e-2);
+      expect(test::in_even_light(material), options, 1e-2);
     }
   }
 }
 
 TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render][light]") {
-  const LightScene scenes[] = {tests::under_ball(0.5, 0, 2), tests::under_ball(0.3, 1, 0.8),
-                               tests::under_disc(0.5, 1), tests::under_rectangle(0.4, 0.3, 0, 1),
-                               tests::under_rectangle(0.5, 0.2, 0.3, 0.6)};
+  const LightScene scenes[] = {test::under_ball(0.5, 0, 2), test::under_ball(0.3, 1, 0.8),
+                               test::under_disc(0.5, 1), test::under_rectangle(0.4, 0.3, 0, 1),
+                               test::under_rectangle(0.5, 0.2, 0.3, 0.6)};
   for (const LightScene& scene : scenes) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
-      RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
+      RenderOptions options = square(32, test::scaled_cases(way == LightSampling::Bsdf ? 256 : 64));
       options.light_sampling = way;
       expect(scene, options, way == LightSampling::Bsdf ? 2e-2 : 5e-3);
     }
@@ -80,17 +80,17 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
 // Regression: any object in front of a light blocked shadow rays. A ball light was noisier, and a point light was
 // lost.
 TEST_CASE("light: holes and panes let light through to where it is looked for", "[render][light]") {
-  for (const tests::Veil& veil : {tests::kGauze, tests::kPane}) {
+  for (const test::Veil& veil : {test::kGauze, test::kPane}) {
     INFO(veil.material);
-    RenderOptions options = square(16, test::few(64));
+    RenderOptions options = square(16, test::scaled_cases(64));
     options.max_depth = 1;  // no second bounce: the pane also reflects the floor's own light back to the floor
-    expect(tests::veiled_point(veil), options, 1e-3);
+    expect(test::veiled_point(veil), options, 1e-3);
   }
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
-    RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
+    RenderOptions options = square(32, test::scaled_cases(way == LightSampling::Bsdf ? 256 : 64));
     options.light_sampling = way;
-    expect(tests::veiled_ball(tests::kGauze), options, way == LightSampling::Bsdf ? 3e-2 : 5e-3);
+    expect(test::veiled_ball(test::kGauze), options, way == LightSampling::Bsdf ? 3e-2 : 5e-3);
   }
 }
 
@@ -98,24 +98,24 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
 // light.
 TEST_CASE("light: many veils", "[render][light]") {
   for (const LightSampling way : {LightSampling::Mis, LightSampling::Nee}) {
-    RenderOptions options = square(32, test::few(64));
+    RenderOptions options = square(32, test::scaled_cases(64));
     options.light_sampling = way;
-    expect(tests::many_veils(), options, 2e-2);
+    expect(test::many_veils(), options, 2e-2);
   }
 }
 
 // Regression: a liquid between two veils absorbed nothing, because a shadow ray used only the absorption at its
 // start.
 TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
-  RenderOptions options = square(16, test::few(64));
+  RenderOptions options = square(16, test::scaled_cases(64));
   options.max_depth = 1;
-  expect(tests::veiled_drink(), options, 1e-3);
+  expect(test::veiled_drink(), options, 1e-3);
 }
 
-// Regression: shadow rays found light on a clear lamp's surface although water filled the lamp, and light through an
+// Regression: shadow rays found light on a clear area light's surface although water filled the area light, and light through an
 // unbounded sea.
 TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
-  for (const LightScene& scene : {tests::drowned_lamp(), tests::bottomless_sea()}) {
+  for (const LightScene& scene : {test::submerged_area_light(), test::bottomless_sea()}) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
       RenderOptions options = square(8, 16);
@@ -128,12 +128,12 @@ TEST_CASE("light: no more is found in water than gets there", "[render][light]")
 // Regression: a sheet of opacity 0.25 emitted as much as a sheet without holes: 5.8 instead of 1.875.
 TEST_CASE("light: of a surface with holes only what is there emits", "[render][light]") {
   for (const double opacity : {0.25, 0.0}) {
-    expect(tests::glowing_gauze(opacity), square(16, test::few(256)), 1e-2);
+    expect(test::glowing_gauze(opacity), square(16, test::scaled_cases(256)), 1e-2);
     for (const LightSampling way : kEveryWay) {
       INFO("opacity " << opacity << ", way " << static_cast<int>(way));
-      RenderOptions options = square(32, test::few(64));
+      RenderOptions options = square(32, test::scaled_cases(64));
       options.light_sampling = way;
-      expect(tests::under_glowing_gauze(opacity), options, 6e-2);
+      expect(test::under_glowing_gauze(opacity), options, 6e-2);
     }
   }
 }
@@ -142,9 +142,9 @@ TEST_CASE("light: of a surface with holes only what is there emits", "[render][l
 TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
-    RenderOptions options = square(32, test::few(way == LightSampling::Bsdf ? 256 : 64));
+    RenderOptions options = square(32, test::scaled_cases(way == LightSampling::Bsdf ? 256 : 64));
     options.light_sampling = way;
-    expect(tests::under_coated_ball(), options, way == LightSampling::Bsdf ? 2e-2 : 5e-3);
+    expect(test::under_coated_ball(), options, way == LightSampling::Bsdf ? 2e-2 : 5e-3);
   }
 }
 
@@ -152,16 +152,16 @@ TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
 // weighed so much that most renders were 1 % too dark.
 TEST_CASE("light: paths that lose nothing are not ended by chance", "[render][light][released]") {
   const auto scene =
-      scene_of(tests::furnace(R"({"type": "principled", "transmission": 1, "roughness": 0.15, "ior": 2.4})"));
-  CHECK(tests::returned(scene, 16, 256) == Approx(1).margin(4e-3));
+      scene_of(test::furnace(R"({"type": "principled", "transmission": 1, "roughness": 0.15, "ior": 2.4})"));
+  CHECK(test::returned(scene, 16, 256) == Approx(1).margin(4e-3));
 }
 
 TEST_CASE("light: random white materials return what they get", "[render][light]") {
-  const int count = test::few(16);
+  const int count = test::scaled_cases(16);
   double sum = 0;
   for (int i = 0; i < count; ++i) {
-    const tests::WhiteMaterial material = tests::random_white(static_cast<std::uint32_t>(i));
-    const double returned = tests::returned(scene_of(tests::furnace(material.json)), 16, 64);
+    const test::WhiteMaterial material = test::random_white(static_cast<std::uint32_t>(i));
+    const double returned = test::returned(scene_of(test::furnace(material.json)), 16, 64);
     sum += returned;
     CAPTURE(material.json, returned);
     CHECK(returned < 1.04);
@@ -174,36 +174,36 @@ TEST_CASE("light: random white materials return what they get", "[render][light]
 // Straight transmission is not scattering: a path of any bounce limit sees the light behind a hole.
 TEST_CASE("light: pass-through does not count as a bounce", "[render][light]") {
   LightScene scene =
-      tests::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
+      test::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
                            R"("type": "box", "half_size": [3, 3, 0.1])");
-  scene.radiance = tests::kGauze.passes;
-  RenderOptions options = square(16, test::few(256));
+  scene.radiance = test::kGauze.passes;
+  RenderOptions options = square(16, test::scaled_cases(256));
   options.max_depth = 0;
   expect(scene, options, 1e-1);
 }
 
 // Regression: a material without an interior had the refractive index of its surroundings and reflected nothing.
 TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
-  LightScene scene = tests::smooth_gauze();
-  RenderOptions options = square(16, test::few(256));
+  LightScene scene = test::smooth_gauze();
+  RenderOptions options = square(16, test::scaled_cases(256));
   expect(scene, options, 1e-1);
 }
 
 TEST_CASE("light: a cavity gathers light by many bounces", "[render][light][released]") {
-  for (const double albedo : {0.5, 0.9}) expect(tests::cavity(albedo, 40), square(24, test::few(128)), 3e-2);
+  for (const double albedo : {0.5, 0.9}) expect(test::cavity(albedo, 40), square(24, test::scaled_cases(128)), 3e-2);
 }
 
 TEST_CASE("light: a slab of glass passes 1 - R over 1 + R", "[render][light]") {
-  expect(tests::slab(), square(24, test::few(64)), 1e-2);
+  expect(test::slab(), square(24, test::scaled_cases(64)), 1e-2);
 }
 
 TEST_CASE("light: Lambert's ball at every phase", "[render][light][released]") {
   for (const double degrees : {0.0, 60.0, 120.0}) {
     RenderOptions options = square(192, 4);
-    const RenderResult result = render(scene_of(tests::moon(degrees).json), options);
+    const RenderResult result = render(scene_of(test::moon(degrees).json), options);
     const Estimate found = estimate(result.film);
-    INFO(degrees << " degrees: " << found.mean << ", in closed form " << tests::moon(degrees).radiance);
-    CHECK(found.mean == Approx(tests::moon(degrees).radiance).epsilon(3e-3));
+    INFO(degrees << " degrees: " << found.mean << ", in closed form " << test::moon(degrees).radiance);
+    CHECK(found.mean == Approx(test::moon(degrees).radiance).epsilon(3e-3));
   }
 }
 
@@ -240,7 +240,7 @@ Cells cells_of(const compiler::CompiledScene& scene, LightSampling way, int spp,
 }
 
 TEST_CASE("light: looking for lights, hitting them and both give one picture", "[render][light][heavy]") {
-  const auto scene = scene_of(tests::kLampRoom);
+  const auto scene = scene_of(test::kAreaLightRoom);
   const Cells both = cells_of(scene, LightSampling::Mis, 32, 0);
   for (const LightSampling way : {LightSampling::Nee, LightSampling::Bsdf}) {
     const Cells other = cells_of(scene, way, way == LightSampling::Bsdf ? 128 : 32, 1000);

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/sample_bins.h"
 
 namespace fathom::runtime::light_tree_test {
@@ -33,33 +33,33 @@ std::vector<LightBounds> random_lights(std::uint32_t count) {
   return lights;
 }
 
-const LightQuery kQueries[] = {
+const LightSampleContext kQueries[] = {
     {{0, -3, 0}, {0, 1, 0}}, {{3, 0, -2}, {0.6f, 0, 0.8f}}, {{40, 9, 0}, {-1, 0, 0}}, {{1, 1, 1}, {0, -1, 0}, true}};
 
 TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[lights]") {
   for (const std::uint32_t count : {1u, 5u, 32u, 33u, 500u}) {
     const LightTree tree(random_lights(count));
-    for (const LightQuery& query : kQueries) {
+    for (const LightSampleContext& query : kQueries) {
       std::vector<double> expected;
       double sum = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
-        expected.push_back(static_cast<double>(tree.probability(query, i)));
+        expected.push_back(static_cast<double>(tree.pmf(query, i)));
         sum += expected.back();
       }
       std::vector<double> counts(count + 1);
-      const int n = test::few(20000);
+      const int n = test::scaled_cases(20000);
       double worst = 0;
       for (int i = 0; i < n; ++i) {
-        const auto choice = tree.choose(query, Sampler(3, static_cast<std::uint32_t>(i), 0, 0).next());
+        const auto choice = tree.sample(query, Sampler(3, static_cast<std::uint32_t>(i), 0, 0).next());
         ++counts[choice ? choice->light : count];
         if (choice)
-          worst = std::max(worst, std::abs(static_cast<double>(choice->probability) / expected[choice->light] - 1));
+          worst = std::max(worst, std::abs(static_cast<double>(choice->pmf) / expected[choice->light] - 1));
       }
       expected.push_back(std::max(0.0, 1 - sum));
       CAPTURE(count, query.position.x, sum);
       CHECK(sum < 1 + 1e-5);
       // A node's estimate can be above 0 when those of its leaves are all 0. Choosing this node gives no sample.
-      CHECK((count > LightTree::kFewLights ? sum > 0.9 : std::abs(sum - 1) < 1e-5 || tree.total(query) == 0));
+      CHECK((count > LightTree::kFewLights ? sum > 0.9 : std::abs(sum - 1) < 1e-5 || tree.total_importance(query) == 0));
       CHECK(worst < 1e-4);
       CHECK(test::chi_square_deviation(counts, expected, n) < 5);
     }
@@ -73,7 +73,7 @@ TEST_CASE("light tree: what light can reach has a probability", "[lights]") {
   for (std::uint32_t k = 0; k < 200; ++k) {
     Sampler s(11, k, 0, 0);
     const auto spread = [&](float size) { return static_cast<double>((s.next() - 0.5f) * size); };
-    const LightQuery query{{spread(30), spread(8), spread(30)},
+    const LightSampleContext query{{spread(30), spread(8), spread(30)},
                            glm::normalize(glm::vec3(spread(1), spread(1), spread(1)))};
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
       const LightBounds& light = lights[i];
@@ -84,7 +84,7 @@ TEST_CASE("light tree: what light can reach has a probability", "[lights]") {
           light.cos_spread < 0 || (light.two_sided ? std::abs(leaving) : leaving) > light.cos_emission;
       if (!shines || glm::dot(query.normal, wi) <= 0.01f) continue;
       ++checked;
-      if (tree.probability(query, i) <= 0) FAIL("light " << i << " of query " << k);
+      if (tree.pmf(query, i) <= 0) FAIL("light " << i << " of query " << k);
     }
   }
   CHECK(checked > 5000);
@@ -94,15 +94,15 @@ TEST_CASE("light tree: an estimate is the irradiance of what is far and faces th
   LightBounds light;
   light.centre = {0, 10, 0};
   light.intensity = 4;
-  CHECK(estimate(light, {{0, 0, 0}, {0, 1, 0}}) == Approx(0.04));
-  CHECK(estimate(light, {{0, 0, 0}, {0.6f, 0.8f, 0}}) == Approx(0.032));
-  CHECK(estimate(light, {{0, 0, 0}, {0, -1, 0}}) == 0);
-  CHECK(estimate(light, {{0, 0, 0}, {0, -1, 0}, true}) == Approx(0.04));
+  CHECK(importance(light, {{0, 0, 0}, {0, 1, 0}}) == Approx(0.04));
+  CHECK(importance(light, {{0, 0, 0}, {0.6f, 0.8f, 0}}) == Approx(0.032));
+  CHECK(importance(light, {{0, 0, 0}, {0, -1, 0}}) == 0);
+  CHECK(importance(light, {{0, 0, 0}, {0, -1, 0}, true}) == Approx(0.04));
   light.cos_spread = 1;
   light.axis = {0, 1, 0};
-  CHECK(estimate(light, {{0, 0, 0}, {0, 1, 0}}) == 0);
+  CHECK(importance(light, {{0, 0, 0}, {0, 1, 0}}) == 0);
   light.two_sided = true;
-  CHECK(estimate(light, {{0, 0, 0}, {0, 1, 0}}) == Approx(0.04));
+  CHECK(importance(light, {{0, 0, 0}, {0, 1, 0}}) == Approx(0.04));
 }
 
 TEST_CASE("light tree: near() finds every ball in reach", "[lights]") {
@@ -113,7 +113,7 @@ TEST_CASE("light tree: near() finds every ball in reach", "[lights]") {
     const auto spread = [&](float size) { return static_cast<double>((s.next() - 0.5f) * size); };
     const glm::dvec3 place(spread(20), spread(4), spread(20));
     std::vector<std::uint32_t> found, truth;
-    tree.near(place, 0.5, [&](std::uint32_t i) { found.push_back(i); });
+    tree.for_each_near(place, 0.5, [&](std::uint32_t i) { found.push_back(i); });
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
       if (glm::length(lights[i].centre - place) <= lights[i].radius + 0.5) truth.push_back(i);
     }

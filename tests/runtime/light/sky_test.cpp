@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/base/color.h"
-#include "runtime/light/light_query.h"
+#include "runtime/light/light_sample_context.h"
 
 namespace fathom::runtime::sky_test {
 namespace {

@@ -18,11 +18,11 @@ TEST_CASE("certify: first roots of a sphere, from outside and from within", "[ma
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field field = make_field(scene);
   RealScratch scratch;
-  const Certified outside = certify(field, {0.5, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch);
+  const CertifiedResult outside = certify(field, {0.5, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch);
   CHECK(outside.status == Status::Hit);
   CHECK(std::abs(outside.t - (5 - std::sqrt(0.75))) <= 1e-12);
   CHECK(outside.width <= 1e-12);
-  const Certified inside = certify(field, {0.5, 0, 0}, {0, 0, -1}, -1, {0, 10, 0}, scratch);
+  const CertifiedResult inside = certify(field, {0.5, 0, 0}, {0, 0, -1}, -1, {0, 10, 0}, scratch);
   CHECK(inside.status == Status::Hit);
   CHECK(std::abs(inside.t - std::sqrt(0.75)) <= 1e-12);
   CHECK(certify(field, {1.001, 0, 5}, {0, 0, -1}, 1, {0, 10, 0}, scratch).status == Status::Miss);
@@ -46,7 +46,7 @@ TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
   const auto past_edge = [&](double gap) {
     return certify(box_field, glm::dvec3(1 + gap, 1 + gap, 0) - 5.0 * along, along, 1, {0, 10, 0}, scratch).status;
   };
-  CHECK(past_edge(1e-13) == Status::Contact);
+  CHECK(past_edge(1e-13) == Status::NearMiss);
   CHECK(past_edge(1e-10) == Status::Miss);
   // A ball's field is nearly level along a tangent ray, but bounds of the derivative exclude a hit without resolving
   // the gap.
@@ -63,11 +63,11 @@ TEST_CASE("certify: intervals settle a long ray along a plane in a few evaluatio
   const auto scene = scene_of(R"("objects": [{"type": "plane", "normal": [0, 1, 0]}])");
   const Field field = make_field(scene);
   RealScratch scratch;
-  const Certified along = certify(field, {0, 1e-6, 0}, {1, 0, 0}, 1, {0, 1e4, 0}, scratch);
+  const CertifiedResult along = certify(field, {0, 1e-6, 0}, {1, 0, 0}, 1, {0, 1e4, 0}, scratch);
   CHECK(along.status == Status::Miss);
   CHECK(along.evaluations < 10);
   const double slope = 1e-6;
-  const Certified down = certify(field, {0, 1e-3, 0}, {1, -slope, 0}, 1, {0, 1e4, 0}, scratch);
+  const CertifiedResult down = certify(field, {0, 1e-3, 0}, {1, -slope, 0}, 1, {0, 1e4, 0}, scratch);
   REQUIRE(down.status == Status::Hit);
   CHECK(down.t == Approx(1000).epsilon(1e-6));
   CHECK(down.evaluations < 200);
@@ -97,7 +97,7 @@ TEST_CASE("certify: rays that are searched side by side end as each does alone",
     const glm::dvec3 from(random.uniform(-1, 1), random.uniform(-0.9, 0.9), random.uniform(-0.9, 0.9));
     rays.push_back({from, random.direction(), 0.1});
   }
-  std::vector<Certified> alone;
+  std::vector<CertifiedResult> alone;
   RealScratch scratch;
   int hits = 0;
   for (const Ray& ray : rays) {

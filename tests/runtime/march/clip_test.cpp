@@ -22,7 +22,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Clipped {
-  Clip fate;
+  ClipResult result;
   double entry, length;
 };
 
@@ -30,12 +30,12 @@ struct Clipped {
 Clipped clip_one(const Ray& ray, const compiler::Box& box, double far) {
   const double squared = glm::dot(ray.direction, ray.direction);
   const bool placed = std::isfinite(ray.origin.x) && std::isfinite(ray.origin.y) && std::isfinite(ray.origin.z);
-  if (!(squared > 1e-60 && squared < 1e60) || !placed || std::isnan(ray.t_max)) return {Clip::Invalid, 0, 0};
+  if (!(squared > 1e-60 && squared < 1e60) || !placed || std::isnan(ray.t_max)) return {ClipResult::Invalid, 0, 0};
   const glm::dvec3 direction = std::abs(squared - 1) < 1e-6 ? ray.direction : ray.direction / std::sqrt(squared);
   double begin = 0, end = std::min(ray.t_max, far);
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0) {
-      if (!(ray.origin[axis] >= box.lo[axis] && ray.origin[axis] <= box.hi[axis])) return {Clip::Past, 0, 0};
+      if (!(ray.origin[axis] >= box.lo[axis] && ray.origin[axis] <= box.hi[axis])) return {ClipResult::Past, 0, 0};
       continue;
     }
     const double inverse = 1 / direction[axis];
@@ -43,8 +43,8 @@ Clipped clip_one(const Ray& ray, const compiler::Box& box, double far) {
     begin = std::max(begin, std::min(a, b));
     end = std::min(end, std::max(a, b));
   }
-  if (box.empty() || !(begin <= end)) return {Clip::Past, 0, 0};
-  return {Clip::Within, begin, end - begin};
+  if (box.empty() || !(begin <= end)) return {ClipResult::Past, 0, 0};
+  return {ClipResult::Within, begin, end - begin};
 }
 
 // Random rays around the origin: towards boxes and away from them, along axes, far too long, and invalid ones.
@@ -107,8 +107,8 @@ TEST_CASE("rays are clipped as one by one, wherever they stand and on every inst
           continue;
         }
         const Clipped expected = clip_one(rays[i], box, far);
-        bool same = block->what_became_of(i) == expected.fate && block->id[i] == i;
-        if (expected.fate == Clip::Within) {
+        bool same = block->clip_result(i) == expected.result && block->id[i] == i;
+        if (expected.result == ClipResult::Within) {
           ++within;
           same = same && block->entry[i] == expected.entry && block->length[i] == expected.length &&
                  block->side[i] == (expected.entry > 0 ? 1 : rays[i].side);
@@ -127,7 +127,7 @@ TEST_CASE("a ray that is clipped begins where it enters the box, in a unit direc
   const auto block = std::make_unique<RayBlock>();
   block->push(7, {{0, 0, -5}, {0, 0, 2}});
   clip(*block, 0, {{-1, -1, -1}, {1, 1, 1}}, kInfinity);
-  REQUIRE(block->what_became_of(0) == Clip::Within);
+  REQUIRE(block->clip_result(0) == ClipResult::Within);
   CHECK(block->origin[2][0] == -1);
   CHECK(block->direction[2][0] == 1);
   CHECK(block->entry[0] == 4);

@@ -11,7 +11,7 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/catalogue/departures.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::convex_march_test {
@@ -37,7 +37,7 @@ std::string scene(std::uint64_t seed) {
                        random.uniform(-2, 2), random.uniform(0, 1.5), random.uniform(-2, 2), random.below(90),
                        random.below(90));
   };
-  static const char* kJoined[] = {"{0}",
+  static const char* kFusedMin[] = {"{0}",
                                   "{{\"type\": \"subtraction\", \"of\": [{0}, {1}]}}",
                                   "{{\"type\": \"intersection\", \"of\": [{0}, {1}]}}",
                                   "{{\"type\": \"smooth_union\", \"k\": 0.2, \"of\": [{0}, {1}]}}",
@@ -48,7 +48,7 @@ std::string scene(std::uint64_t seed) {
                                   "{{\"type\": \"union\", \"of\": [{0}, {1}], \"scale\": 0.7}}"};
   std::string objects = "{\"type\": \"plane\", \"normal\": [0, 1, 0], \"offset\": 0}";
   for (int i = 0; i < 8; ++i)
-    objects += ",\n" + fmt::format(fmt::runtime(kJoined[random.below(9)]), shape(), shape());
+    objects += ",\n" + fmt::format(fmt::runtime(kFusedMin[random.below(9)]), shape(), shape());
   return "{\"version\": 1, \"camera\": {\"position\": [4, 3, 5], \"target\": [0, 0.5, 0]}, \"objects\": [" + objects +
          "]}";
 }
@@ -73,9 +73,9 @@ void compare(const std::vector<RayHit>& found, const std::vector<RayHit>& exact,
 TEST_CASE("convex fields: rays end where the search in double ends them, sooner", "[march][convexity]") {
   Tally led, plain;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const compiler::CompiledScene compiled = tests::compiled(scene(seed));
+    const compiler::CompiledScene compiled = test::compiled(scene(seed));
     Field field = make_field(compiled);
-    for (const RaySet& set : make_ray_sets(compiled, field, test::few(240), seed)) {
+    for (const RaySet& set : make_ray_sets(compiled, field, test::scaled_cases(240), seed)) {
       const std::vector<RayHit> exact = march(field, set.rays, {.method = Method::Certified}).ray_hits;
       field.convex = true;
       compare(march(field, set.rays).ray_hits, exact, led);
@@ -84,7 +84,7 @@ TEST_CASE("convex fields: rays end where the search in double ends them, sooner"
     }
   }
   CAPTURE(led.rays, led.wrong, plain.wrong, led.off, plain.off, led.evaluations, plain.evaluations);
-  CHECK(led.rays > test::few(6000));
+  CHECK(led.rays > test::scaled_cases(6000));
   CHECK(led.wrong <= plain.wrong);
   CHECK(led.off <= plain.off);
   CHECK(led.evaluations < 0.85 * static_cast<double>(plain.evaluations));
@@ -94,10 +94,10 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
   Tally skipping, plain;
   int clear = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
-    const compiler::CompiledScene compiled = tests::compiled(scene(seed));
+    const compiler::CompiledScene compiled = test::compiled(scene(seed));
     const Field field = make_field(compiled);
     const catalogue::Places places =
-        catalogue::places(compiled, make_ray_sets(compiled, field, test::few(480), seed)[0].rays);
+        catalogue::places(compiled, make_ray_sets(compiled, field, test::scaled_cases(480), seed)[0].rays);
     test::Random random(seed);
     std::vector<Ray> rays, without;
     for (std::size_t i = 0; i < places.hits.size(); ++i) {
@@ -107,7 +107,7 @@ TEST_CASE("convex fields: what is clear of a place that was hit is", "[march][co
       const glm::dvec3 away = i % 3 == 0 ? aside : direction;
       const double side = glm::dot(away, normal) < 0 ? -1 : 1;
       const glm::dvec3 up = away + (side - 1) * glm::dot(away, normal) * normal;
-      rays.push_back(leave(places.hits[i], places.points[i], glm::normalize(up), false));
+      rays.push_back(spawn_ray(places.hits[i], places.points[i], glm::normalize(up), false));
       clear += rays.back().clear > 0;
       without.push_back(rays.back());
       without.back().clear = 0;

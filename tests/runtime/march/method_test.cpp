@@ -280,10 +280,10 @@ TEST_CASE("method: the counters add up", "[march]") {
     CHECK(counters.rays == rays.size());
     CHECK(counters.hits == ends[Status::Hit]);
     CHECK(counters.misses == ends[Status::Miss]);
-    CHECK(counters.contacts == ends[Status::Contact]);
+    CHECK(counters.near_misses == ends[Status::NearMiss]);
     CHECK(counters.invalid == ends[Status::Invalid]);
     CHECK(counters.invalid == 2);
-    CHECK(counters.hits + counters.misses + counters.contacts + counters.invalid == counters.rays);
+    CHECK(counters.hits + counters.misses + counters.near_misses + counters.invalid == counters.rays);
     CHECK(counters.evaluations == evaluations);
     CHECK(counters.certified_evaluations == in_double);
     CHECK(counters.certified >= decided_in_double);

@@ -25,14 +25,14 @@ const std::string kGrain = R"~(["0.5 + 0.25*sin(3*x)", "0.5 + 0.25*sin(5*y)", "0
 const std::string kOak = R"("oak": {"type": "diffuse", "space": "object", "color": )" + kGrain + "}";
 
 CompiledScene scene_of(const std::string& objects, const std::string& materials = kOak) {
-  return tests::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
+  return test::compiled(R"({"version": 1, "materials": {)" + materials + R"(}, "objects": [)" + objects + "]}");
 }
 
 // Returns the scene's colour at a point of its surface.
 vec3 color_at(const CompiledScene& scene, dvec3 p) {
   RealScratch scratch;
   const Field field = make_field(scene);
-  const vm::SurfacePlace found = find_place(scene, field, p - scene.origin, scratch);
+  const vm::SurfacePlace found = find_object_point(scene, field, p - scene.origin, scratch);
   return Materials(scene)
       .at(scene.surfaces[found.surface].material, p - scene.origin, found.place, scratch.workspace)
       .base_color;
@@ -86,13 +86,13 @@ object box([0.5, 0.4, 0.3]))~";
         ".scale(2).material(oak).rotate([0, 90, 0]).translate([3, 1, -2])",
         ".scale(2).translate([1, 0.5, 1.5]).rotate([0, 90, 0]).material(oak).translate([1.5, 0.5, -1])"}) {
     INFO(chain);
-    check_grain(tests::compiled(head + chain), placed(kOnBox), kOnBox);
+    check_grain(test::compiled(head + chain), placed(kOnBox), kOnBox);
   }
 }
 
 TEST_CASE("object space: uses and copies have the same grain, each its own", "[object_space]") {
   const auto with_nodes = [](const std::string& node, const std::string& objects) {
-    return tests::compiled(R"({"version": 1, "materials": {)" + kOak + R"(}, "nodes": {"block": )" + node +
+    return test::compiled(R"({"version": 1, "materials": {)" + kOak + R"(}, "nodes": {"block": )" + node +
                            R"(}, "objects": [)" + objects + "]}");
   };
   const std::string use = R"({"use": "block", )" + kPlaced + R"(}, {"use": "block", "translate": [-4, 0, 0]})";
@@ -184,7 +184,7 @@ CompiledScene room(const Spaces& spaces, const std::string& right = "right") {
   const std::string noise =
       R"({"type": "diffuse", "color": {"pattern": "noise", "a": [0.9, 0.4, 0.1], "b": [0.1, 0.2, 0.9], "scale": 0.3)";
   const auto of = [&](const char* space) { return noise + space + "}}"; };
-  return tests::compiled(
+  return test::compiled(
       R"({"version": 1, "materials": {"white": {"type": "diffuse"}, "ball": )" + of(spaces.ball) + R"(, "left": )" +
       of(spaces.left) + R"(, "right": )" + of(spaces.right) + R"(, "lamp": {"type": "emissive", "emission":
       {"pattern": "gradient", "from": [-0.4, 0, 0], "to": [0.4, 0, 0], "a": [9, 1, 1], "b": [1, 1, 9])" +
@@ -200,7 +200,7 @@ CompiledScene room(const Spaces& spaces, const std::string& right = "right") {
 
 const Spaces kOwn = {R"(, "space": "object")", R"(, "space": "object")", R"(, "space": "object")",
                      R"(, "space": "object")"};
-const Spaces kMoved = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.5, 0.5, 0])",
+const Spaces kFusedTranslate = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.5, 0.5, 0])",
                        R"(, "translate": [1.25, 0.5, 0])", R"(, "translate": [1, 1.75, 0.5])"};
 const Spaces kStill = {"", "", "", ""};
 
@@ -217,12 +217,12 @@ double apart(const Film& a, const Film& b) {
 TEST_CASE("object space: hits, blends and lamps show the patterns of the moved bodies", "[object_space][render]") {
   RenderOptions options;
   options.width = 48, options.height = 32, options.spp = 4, options.threads = 2;
-  const Film moved = render(room(kMoved), options).film, still = render(room(kStill), options).film;
+  const Film moved = render(room(kFusedTranslate), options).film, still = render(room(kStill), options).film;
   CHECK(apart(moved, still) > 0.1);
   // With "left", both balls share a material, but each has its own coordinates.
   for (const char* right : {"right", "left"}) {
     const CompiledScene own = room(kOwn, right);
-    CHECK(own.lamps.size() == 1);
+    CHECK(own.area_lights.size() == 1);
     CHECK(apart(moved, render(own, options).film) < 1e-5);
   }
 }
@@ -265,7 +265,7 @@ std::string blocks(int count) {
 
 TEST_CASE("object space: regions, threads and tiles leave no trace", "[object_space][render][threads]") {
   const CompiledScene scene =
-      tests::compiled(R"({"version": 1, "camera": {"position": [0, 3, 3], "target": [0, 0, -2]},
+      test::compiled(R"({"version": 1, "camera": {"position": [0, 3, 3], "target": [0, 0, -2]},
       "background": [1, 1, 1], "materials": {)" +
                       kOak + R"(}, "objects": [)" + blocks(300) + "]}");
   CHECK(scene.surfaces[0].placed);

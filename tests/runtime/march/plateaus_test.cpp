@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "runtime/march/march.h"
-#include "runtime/march/search.h"
+#include "runtime/march/certified_search.h"
 #include "runtime/measure/ray_sets.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::runtime::plateaus_test {
@@ -144,7 +144,7 @@ class Truth {
   bool loses(const RayHit& ray_hit, RealScratch& scratch) const {
     constexpr int kPlaces = 200;
     const double end = ray_hit.status == Status::Hit ? ray_hit.t - 1e-3 : end_;
-    const double tall = 4 * kDistanceErrorInDouble * (4 + static_cast<double>(field_.magnitude));
+    const double tall = 4 * kDistanceErrorInDouble * (4 + static_cast<double>(field_.cancellation));
     int level = 0;
     for (int i = 1; i < kPlaces; ++i) {
       const double t = begin_ + (end - begin_) * i / kPlaces, g = ray_hit.side * at(t, scratch);
@@ -180,7 +180,7 @@ class Truth {
 
 struct Tally {
   // differ: hits of only one of float and double, or hits more than 1e-3 apart.
-  int rays = 0, hits = 0, contacts = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0, differ = 0;
+  int rays = 0, hits = 0, near_misses = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0, differ = 0;
   std::uint64_t evaluations = 0, searched = 0, most = 0;  // most: of a single ray
   std::string first, report;                              // the first wrong ray of a scene; those of all scenes
 
@@ -204,7 +204,7 @@ void judge(const Field& field, const std::vector<Ray>& rays, Tally& tally) {
     const bool hit = a.status == Status::Hit, met = b.status == Status::Hit;
     ++tally.rays;
     tally.hits += met;
-    tally.contacts += b.status == Status::Contact;
+    tally.near_misses += b.status == Status::NearMiss;
     tally.evaluations += a.evaluations;
     tally.searched += b.evaluations;
     tally.most = std::max({tally.most, std::uint64_t{a.evaluations}, std::uint64_t{b.evaluations}});
@@ -305,8 +305,8 @@ TEST_CASE("plateaus: a solid ends where the field stays 0, not where two solids 
 
 TEST_CASE("plateaus: rays pass what is 0 over a volume, and leave solids there", "[march]") {
   Tally tally;
-  try_scenes(1, test::few(12), 30, tally);
-  CAPTURE(tally.rays, tally.hits, tally.contacts, tally.lost, tally.lost_in_double, tally.false_hits,
+  try_scenes(1, test::scaled_cases(12), 30, tally);
+  CAPTURE(tally.rays, tally.hits, tally.near_misses, tally.lost, tally.lost_in_double, tally.false_hits,
           tally.false_in_double, tally.differ, tally.evaluations, tally.searched);
   INFO(tally.report);
   CHECK(tally.wrong() == 0);
@@ -336,9 +336,9 @@ TEST_CASE("plateaus: as many scenes as are asked for", "[nightly][.]") {
   Tally tally;
   try_scenes(seed ? std::strtoull(seed, nullptr, 10) : 1'000'000, scenes ? std::atoi(scenes) : 1000, 100, tally);
   WARN(
-      fmt::format("{} rays, {} hits, {} contacts, {} lost, {} lost in double, {} false hits, {} false in double, {} "
+      fmt::format("{} rays, {} hits, {} near misses, {} lost, {} lost in double, {} false hits, {} false in double, {} "
                   "differ, {} evaluations, {} searching, at most {} a ray",
-                  tally.rays, tally.hits, tally.contacts, tally.lost, tally.lost_in_double, tally.false_hits,
+                  tally.rays, tally.hits, tally.near_misses, tally.lost, tally.lost_in_double, tally.false_hits,
                   tally.false_in_double, tally.differ, tally.evaluations, tally.searched, tally.most));
   INFO(tally.report);
   CHECK(tally.wrong() == 0);

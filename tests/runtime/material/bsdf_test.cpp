@@ -10,7 +10,7 @@
 
 #include "runtime/sampling/sampler.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/materials.h"
 
 namespace fathom::runtime::bsdf_test {
@@ -28,7 +28,7 @@ struct Albedo {
 
 float greatest(glm::vec3 v) { return std::max({v.x, v.y, v.z}); }
 
-const int kAlbedoSamples = test::few(20000);
+const int kAlbedoSamples = test::scaled_cases(20000);
 
 Albedo albedo(const Case& c, float cos, int n) {
   const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
@@ -90,9 +90,9 @@ TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only wh
     Sampler sampler(0, static_cast<std::uint32_t>(i), 0, 0);
     const float lobe = sampler.next();
     const BsdfSample s = bsdf.sample(lobe, sampler.next2());
-    reflected += !s.through;
-    CHECK(glm::length(s.weight * s.eta_scale - (s.through ? glm::vec3(0.5f) : glm::vec3(1))) < 1e-6f);
-    CHECK((s.wi.z < 0) == s.through);
+    reflected += !s.is_transmission;
+    CHECK(glm::length(s.weight * s.eta_scale - (s.is_transmission ? glm::vec3(0.5f) : glm::vec3(1))) < 1e-6f);
+    CHECK((s.wi.z < 0) == s.is_transmission);
   }
   CHECK(std::abs(reflected - n * expected) < 4 * std::sqrt(n * expected * (1 - expected)));
 }
@@ -112,7 +112,7 @@ TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime
         const float error = greatest(glm::abs(s.weight * s.pdf - value.f)) / greatest(value.f);
         worst = std::max(worst, static_cast<double>(error));
         if (value.pdf != s.pdf) FAIL(c.name << ": the densities differ");
-        if (s.through != (glm::dot(s.wi, kNormal) < 0)) FAIL(c.name << ": the side is wrong");
+        if (s.is_transmission != (glm::dot(s.wi, kNormal) < 0)) FAIL(c.name << ": the side is wrong");
       }
       CAPTURE(c.name, cos);
       CHECK(worst <= 1e-6);
@@ -150,7 +150,7 @@ void check_densities(int samples, int rows) {
 }
 
 TEST_CASE("bsdf: every material passes a chi-square test against its density", "[runtime]") {
-  check_densities(test::few(20000), 12);
+  check_densities(test::scaled_cases(20000), 12);
 }
 
 TEST_CASE("bsdf: every material passes a chi-square test of two hundred thousand samples", "[runtime][heavy]") {
@@ -255,12 +255,12 @@ TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]
   for (const MaterialPoint& m : {smooth, glass(0)}) {
     const glm::vec3 wo = towards(0.6f, 0.1f);
     const BsdfSample in = Bsdf(m, kNormal, wo, 1.5f, false).sample(0.999f, {0.3f, 0.4f});
-    REQUIRE(in.through);
+    REQUIRE(in.is_transmission);
     CHECK(in.eta_scale == Approx(2.25).epsilon(1e-5));
     CHECK(in.weight.x == Approx(1 / 2.25).epsilon(1e-5));
     // At the far side of a slab.
     const BsdfSample out = Bsdf(m, kNormal, -in.wi, 1 / 1.5f, true).sample(0.999f, {0.3f, 0.4f});
-    REQUIRE(out.through);
+    REQUIRE(out.is_transmission);
     CHECK(in.weight.x * out.weight.x == Approx(1).epsilon(1e-5));
     CHECK(in.eta_scale * out.eta_scale == Approx(1).epsilon(1e-5));
     CHECK(glm::length(out.wi + wo) < 1e-5f);
@@ -274,9 +274,9 @@ TEST_CASE("bsdf: a thin wall lets straight through what a slab does", "[runtime]
   int passed = 0;
   for (int i = 0; i < 10000; ++i) {
     const BsdfSample s = pane.sample((static_cast<float>(i) + 0.5f) / 10000, {0.5f, 0.5f});
-    if (!s.through) continue;
+    if (!s.is_transmission) continue;
     ++passed;
-    if (s.wi != -kNormal || !s.straight || s.eta_scale != 1) FAIL("bent");
+    if (s.wi != -kNormal || !s.is_null || s.eta_scale != 1) FAIL("bent");
   }
   CHECK(passed / 1e4 == Approx(0.92308).margin(2e-4));
 }
@@ -289,9 +289,9 @@ TEST_CASE("bsdf: what is not opaque has holes", "[runtime]") {
   int holes = 0;
   for (int i = 0; i < 10000; ++i) {
     const BsdfSample s = bsdf.sample((static_cast<float>(i) + 0.5f) / 10000, {0.5f, 0.5f});
-    if (!s.through) continue;
+    if (!s.is_transmission) continue;
     ++holes;
-    if (s.wi != -wo || !s.straight || s.weight != glm::vec3(1)) FAIL("a hole changes light");
+    if (s.wi != -wo || !s.is_null || s.weight != glm::vec3(1)) FAIL("a hole changes light");
   }
   CHECK(holes == Approx(7500).margin(2));
   CHECK(albedo({"hole", m}, 0.4f, 20000).mean == Approx(1).margin(1e-2));
@@ -325,15 +325,15 @@ TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[
       constexpr int kDraws = 20000;
       for (int i = 0; i < kDraws; ++i) {
         const BsdfSample s = bsdf.sample((static_cast<float>(i) + 0.5f) / kDraws, {0.3f, 0.6f});
-        if (!s.straight) continue;
-        if (s.wi != -wo || s.pdf != 0 || !s.through || s.eta_scale != 1) FAIL("not straight");
+        if (!s.is_null) continue;
+        if (s.wi != -wo || s.pdf != 0 || !s.is_transmission || s.eta_scale != 1) FAIL("not straight");
         mean += glm::dvec3(s.weight) / static_cast<double>(kDraws);
       }
-      for (int i = 0; i < 3; ++i) CHECK(bsdf.straight_through()[i] == Approx(mean[i]).margin(2e-4));
+      for (int i = 0; i < 3; ++i) CHECK(bsdf.null_transmission()[i] == Approx(mean[i]).margin(2e-4));
     }
   }
   const auto facing = [](const MaterialPoint& m) {
-    return Bsdf(m, kNormal, kNormal, m.ior, false).straight_through();
+    return Bsdf(m, kNormal, kNormal, m.ior, false).null_transmission();
   };
   CHECK(facing(hole) == glm::vec3(0.75f));
   CHECK(facing(glass(0, true)).x == Approx(0.96 / 1.04).epsilon(1e-5));
@@ -347,7 +347,7 @@ TEST_CASE("bsdf: light goes straight through either way alike", "[runtime]") {
   for (float cos : kCosines) {
     const glm::vec3 wo = towards(cos, 0.2f);
     const Bsdf here(pane, kNormal, wo, 1.5f, false), there(pane, -kNormal, -wo, 1.5f, true);
-    CHECK(glm::length(here.straight_through() - there.straight_through()) < 1e-6f);
+    CHECK(glm::length(here.null_transmission() - there.null_transmission()) < 1e-6f);
   }
 }
 

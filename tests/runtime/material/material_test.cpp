@@ -17,7 +17,7 @@ using glm::vec3;
 using Type = MaterialType;
 
 CompiledScene scene_of(const std::string& material, const std::string& translate = "[0, 0, 0]") {
-  return tests::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +
+  return test::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +
                          R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m", "translate": )" +
                          translate + "}]}");
 }
@@ -89,7 +89,7 @@ TEST_CASE("material: a formula is what it says in the scene's coordinates", "[ma
     const CompiledScene scene = scene_of(text, translate);
     const Materials materials(scene);
     vm::Workspace workspace;
-    CHECK(materials.varies(0));
+    CHECK(materials.is_textured(0));
     for (const dvec3 p : {dvec3(1, 0.25, 2), dvec3(100000.5, 0.001, 1000)}) {
       const vec3 color = materials.at(0, p - scene.origin, p, workspace).base_color;
       CHECK(static_cast<double>(color.x) == Approx(0.5 + 0.25 * std::sin(2 * p.x)).epsilon(1e-6));
@@ -150,7 +150,7 @@ TEST_CASE("material: noise is evaluated at the scene's own coordinates, whatever
 }
 
 TEST_CASE("material: light and priority are known without a place", "[material]") {
-  const CompiledScene scene = tests::compiled(R"~({"version": 1, "materials": {
+  const CompiledScene scene = test::compiled(R"~({"version": 1, "materials": {
       "lamp": {"type": "emissive"}, "glow": {"type": "principled", "emission_luminance": "max(y, 0)"},
       "glass": {"type": "transparent", "priority": 4}},
     "objects": [{"type": "sphere", "radius": 1, "material": "lamp"},
@@ -162,9 +162,9 @@ TEST_CASE("material: light and priority are known without a place", "[material]"
   CHECK(materials.emits(1));
   CHECK(!materials.emits(2));
   CHECK(materials.priority(2) == 4);
-  CHECK(!materials.varies(0));
-  CHECK(materials.varies(1));
-  CHECK(materials.typical(0).emission == vec3(1));
+  CHECK(!materials.is_textured(0));
+  CHECK(materials.is_textured(1));
+  CHECK(materials.untextured(0).emission == vec3(1));
 }
 
 // One material of every type, with no parameter at its default.
@@ -196,7 +196,7 @@ TEST_CASE("material: a mixture begins with one and ends with the other", "[mater
       CHECK(m.transmission == Approx(0.75f * c.transmission + 0.25f * d.transmission));
       CHECK(m.absorption.x == Approx(0.75f * c.absorption.x + 0.25f * d.absorption.x));
       CHECK(m.emission.z == Approx(0.75f * c.emission.z + 0.25f * d.emission.z));
-      CHECK(m.opacity == Approx(m.fills() ? 1 : 0.75f * c.opacity + 0.25f * d.opacity));
+      CHECK(m.opacity == Approx(m.has_interior() ? 1 : 0.75f * c.opacity + 0.25f * d.opacity));
     }
   }
 }

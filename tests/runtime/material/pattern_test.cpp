@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::pattern_test {
 namespace {
@@ -81,7 +81,7 @@ TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
   CHECK(bricks(b, {0.5, 0.75, 0}) == 1);
   CHECK(bricks(b, {0.5, -0.25, 0}) == 1);
   Sampler sampler(1, 0, 0, 0);
-  const int count = test::few(100000);
+  const int count = test::scaled_cases(100000);
   double mortar = 0;
   for (int i = 0; i < count; ++i) mortar += bricks(b, random_point(sampler, 100)) / count;
   CHECK(mortar == Approx(1 - 0.9 * 0.8).margin(0.02));
@@ -90,7 +90,7 @@ TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
 TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pattern]") {
   for (const double size : {10.0, 1e6, 1e9}) {
     Sampler sampler(2, 0, 0, 0);
-    const int count = test::few(40000);
+    const int count = test::scaled_cases(40000);
     double mean = 0, square = 0, least = 2, most = -2;
     for (int i = 0; i < count; ++i) {
       const double v = gradient_noise(random_point(sampler, size), 5);
@@ -114,7 +114,7 @@ TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pa
 TEST_CASE("pattern: noise is continuous with its slope, across cells too", "[pattern]") {
   Sampler sampler(3, 0, 0, 0);
   constexpr double kStep = 1e-5;
-  for (int i = 0; i < test::few(20000); ++i) {
+  for (int i = 0; i < test::scaled_cases(20000); ++i) {
     dvec3 p = random_point(sampler, 1000);
     if (i % 2 == 0) p[i / 2 % 3] = std::round(p[i / 2 % 3]);  // on a face of a cell
     dvec3 step(0);
@@ -131,7 +131,7 @@ TEST_CASE("pattern: octaves add up within [0,1], seeds differ, and no plane is f
   Sampler sampler(4, 0, 0, 0);
   double mean = 0, plane = 0, difference = 0;
   int ends = 0;
-  const int count = test::few(10000);
+  const int count = test::scaled_cases(10000);
   for (int i = 0; i < count; ++i) {
     dvec3 p = random_point(sampler, 50);
     const double v = noise(n, p), w = noise(strong, p);

@@ -43,10 +43,10 @@ using Ids = std::vector<std::uint32_t>;
 
 TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[render]") {
   std::vector<PathState> paths(8);
-  for (const std::size_t id : {1, 3, 5, 7}) paths[id].in_shadow_test = true;
+  for (const std::size_t id : {1, 3, 5, 7}) paths[id].has_shadow_ray = true;
   std::vector<RayHit> ray_hits;
   const Status statuses[] = {Status::Hit, Status::Hit,     Status::Miss,    Status::Miss,
-                             Status::Hit, Status::Contact, Status::Invalid, Status::Hit};
+                             Status::Hit, Status::NearMiss, Status::Invalid, Status::Hit};
   for (std::uint32_t id = 0; id < 8; ++id) ray_hits.push_back({id, statuses[id]});
   for (const bool passes : {false, true}) {
     CAPTURE(passes);
@@ -95,7 +95,7 @@ TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium",
   CHECK(path.next_medium.ior == 1.25f);
   CHECK(path.next_medium.absorption == glm::vec3(1, 2, 3));
   CHECK(path.result.number == 5);
-  CHECK((!path.ends && !path.in_shadow_test && path.bounces == 0));
+  CHECK((!path.ends && !path.has_shadow_ray && path.bounces == 0));
   CHECK(paths[0].key.x == 3);
 }
 
@@ -116,17 +116,17 @@ TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[render]")
   const RenderContext context = context_of(scene);
   std::vector<PathState> paths(4);
   std::vector<RayHit> ray_hits;
-  for (const Status status : {Status::Miss, Status::Hit, Status::Contact, Status::Invalid}) {
+  for (const Status status : {Status::Miss, Status::Hit, Status::NearMiss, Status::Invalid}) {
     const auto id = static_cast<std::uint32_t>(ray_hits.size());
-    paths[id].in_shadow_test = true;
+    paths[id].has_shadow_ray = true;
     paths[id].shadow_radiance = glm::vec3(1, 2, 3);
     ray_hits.push_back({id, status});
   }
   end_shadow_rays(context, 0, ray_hits, paths, {});
   for (const RayHit& ray_hit : ray_hits) {
-    const bool free = ray_hit.status == Status::Miss || ray_hit.status == Status::Contact;
+    const bool free = ray_hit.status == Status::Miss || ray_hit.status == Status::NearMiss;
     CHECK(paths[ray_hit.id].result.radiance == (free ? glm::vec3(1, 2, 3) : glm::vec3(0)));
-    CHECK(!paths[ray_hit.id].in_shadow_test);
+    CHECK(!paths[ray_hit.id].has_shadow_ray);
   }
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("stages: a BSDF sample is a bounce, or a null interaction", "[render]"
     vertices[i].surface.medium_beyond.side = -1;
   }
   vertices[0].bsdf_sample = {.wi = {0, 1, 0}, .weight = glm::vec3(0.5f), .pdf = 0.25f};
-  vertices[1].bsdf_sample = {.wi = {0, -1, 0}, .weight = glm::vec3(0.75f), .through = true, .straight = true};
+  vertices[1].bsdf_sample = {.wi = {0, -1, 0}, .weight = glm::vec3(0.75f), .is_transmission = true, .is_null = true};
   vertices[2].bsdf_sample = {.wi = {0, 1, 0}, .weight = glm::vec3(0)};
   apply_bsdf_samples(settings, vertices);
   CHECK((paths[0].bounces == 1 && paths[0].null_interactions == 0 && paths[0].bsdf_pdf == 0.25f));

@@ -43,8 +43,8 @@ TEST_CASE("surface: new rays start clear of the surface, on the side asked for",
   const Hit hit{{0, 1, 0}, {0, 1, 0}, 1, 1e-7f};
   const SurfacePoint point = find(scene, hit);
   CHECK(point.offset == Approx(16 * kDistanceError));
-  CHECK(spawn(hit, point, false).y > 1 + 15 * static_cast<double>(kDistanceError));
-  CHECK(spawn(hit, point, true).y < 1 - 15 * static_cast<double>(kDistanceError));
+  CHECK(spawn_origin(hit, point, false).y > 1 + 15 * static_cast<double>(kDistanceError));
+  CHECK(spawn_origin(hit, point, true).y < 1 - 15 * static_cast<double>(kDistanceError));
   CHECK(find(scene, {{0, 1, 0}, {0, 1, 0}, 1, 1e-3f}).offset == Approx(2e-3f));
 }
 

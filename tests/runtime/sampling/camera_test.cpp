@@ -116,7 +116,7 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
     // point at the lens's rim. A ray further out misses the point.
     const glm::dvec3 point = spec.position + d * forward;
     for (const double side : {-1.0, 1.0}) {
-      double least = 1e9, least_beyond = 1e9;
+      double least = 1e9, min_beyond = 1e9;
       for (int i = 0; i < 4096; ++i) {
         const glm::vec2 rim(static_cast<float>(i) / 4096, 0.5f);  // along the lens's horizontal diameter
         const auto miss = [&](double scale) {
@@ -124,12 +124,12 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
           return glm::length(glm::cross(point - ray.origin, ray.direction));
         };
         least = std::min(least, miss(1));
-        least_beyond = std::min(least_beyond, miss(1.1));
+        min_beyond = std::min(min_beyond, miss(1.1));
       }
       CAPTURE(d, side, pixels);
       const double blur = radius * std::abs(d - focus) / focus;  // width of one pixel's rays at the point's distance
       CHECK(least < 2e-3 * blur);
-      CHECK(least_beyond > 0.05 * blur);
+      CHECK(min_beyond > 0.05 * blur);
     }
   }
 }

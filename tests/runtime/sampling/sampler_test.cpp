@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::sampler_test {
 namespace {
@@ -128,7 +128,7 @@ TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair o
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     for (int bits = 0; bits <= 12; ++bits) {
       const int count = 1 << bits;
-      for (int pixel = 0; pixel < fathom::test::few(6); ++pixel) {
+      for (int pixel = 0; pixel < fathom::test::scaled_cases(6); ++pixel) {
         for (const int bounce : {-1, 0, 3}) {
           // The plan has twice as many samples: the second run is a net, too. Seed and position vary.
           const SamplePlan plan{kind, static_cast<std::uint64_t>(pixel), 2 * count};
@@ -173,7 +173,7 @@ TEST_CASE("sampler: of the kind blue aligned squares of pixels are nets, too") {
 }
 
 TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixels and pairs") {
-  const int n = fathom::test::few(1 << 16);
+  const int n = fathom::test::scaled_cases(1 << 16);
   const double limit = 255 + 4 * std::sqrt(510.0);
   for (const SamplerKind kind : kKinds) {
     std::vector<int> of_seeds(256), of_pixels(256), of_bounces(256), across_pairs(256);

@@ -22,11 +22,11 @@ TEST_CASE("shutter: runs are even, cover all samples, and see moments within the
   for (const int spp : {1, 2, 3, 4, 16, 31, 100, 4096}) {
     for (const int times : {1, 2, 3, 16, 1 << 20}) {
       INFO(spp << " samples, " << times << " times");
-      const std::vector<ShutterRun> runs = shutter_runs(spp, times, 5, 9);
+      const std::vector<ShutterInterval> runs = shutter_intervals(spp, times, 5, 9);
       CHECK(runs.size() == static_cast<std::size_t>(std::max(1, std::min(times, spp / 2))));
       std::uint32_t end = 0;
       for (std::size_t i = 0; i < runs.size(); ++i) {
-        const ShutterRun& run = runs[i];
+        const ShutterInterval& run = runs[i];
         CHECK(run.samples.first == end);
         end = run.samples.last;
         CHECK(run.samples.first % 2 == 0);
@@ -41,8 +41,8 @@ TEST_CASE("shutter: runs are even, cover all samples, and see moments within the
 }
 
 TEST_CASE("shutter: runs are as long as each other where they can be") {
-  for (const ShutterRun& run : shutter_runs(64, 16, 0, 0)) CHECK(run.samples.size() == 4);
-  for (const ShutterRun& run : shutter_runs(100, 16, 0, 0))
+  for (const ShutterInterval& run : shutter_intervals(64, 16, 0, 0)) CHECK(run.samples.size() == 4);
+  for (const ShutterInterval& run : shutter_intervals(100, 16, 0, 0))
     CHECK((run.samples.size() == 6 || run.samples.size() == 8));
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("shutter: moments are even in their share, and differ by seed, frame a
   int count = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     for (int frame = 0; frame < 100; ++frame) {
-      for (const ShutterRun& run : shutter_runs(16, 4, seed, frame)) {
+      for (const ShutterInterval& run : shutter_intervals(16, 4, seed, frame)) {
         CHECK(times.insert(run.time).second);
         const double within = (run.time * 16 - run.samples.first) / run.samples.size();
         sum += within;

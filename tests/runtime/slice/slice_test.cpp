@@ -100,7 +100,7 @@ TEST_CASE("slice: signs are those of the values, with few choices and with many"
 
 TEST_CASE("slice: a picture of signs is white exactly where values are negative", "[slice]") {
   const std::vector<float> field = {-1, -0.0f, 0, 1e-30f, -1e-30f, std::nanf("")};
-  CHECK(sign_picture(field, 3, 2).rgb ==
+  CHECK(sign_image(field, 3, 2).rgb ==
         std::vector<std::uint8_t>({255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 0, 0, 0}));
 }
 
@@ -118,20 +118,20 @@ TEST_CASE("slice: a picture of distances tells inside from outside, the surface 
   constexpr int kWidth = 41;
   std::vector<float> field;
   for (int i = 0; i < kWidth; ++i) field.push_back(static_cast<float>(i - 20) * 0.1f);
-  const std::vector<std::uint8_t> rgb = distance_picture(field, kWidth, 1, 1).rgb;
+  const std::vector<std::uint8_t> rgb = distance_image(field, kWidth, 1, 1).rgb;
   const auto at = [&](int x) { return &rgb[static_cast<std::size_t>(3 * x)]; };
   CHECK(at(5)[2] > at(5)[0]);    // blue
   CHECK(at(35)[0] > at(35)[2]);  // orange
   CHECK((at(20)[0] < 20 && at(20)[1] < 20 && at(20)[2] < 20));
   CHECK(at(30)[1] < at(28)[1]);  // the line at 1
   CHECK(at(10)[1] < at(12)[1]);  // the line at -1
-  CHECK(distance_picture({std::nanf(""), 1}, 2, 1, 1).rgb[1] == 0);
+  CHECK(distance_image({std::nanf(""), 1}, 2, 1, 1).rgb[1] == 0);
   const float inf = std::numeric_limits<float>::infinity();
-  CHECK(distance_picture({inf, -inf, 1, 0}, 2, 2, 1).rgb.size() == 12);
+  CHECK(distance_image({inf, -inf, 1, 0}, 2, 2, 1).rgb.size() == 12);
 }
 
 TEST_CASE("slice: a region all at one level is no line", "[slice]") {
-  const std::vector<std::uint8_t> rgb = distance_picture({1, 1, 1, 1}, 2, 2, 1).rgb;
+  const std::vector<std::uint8_t> rgb = distance_image({1, 1, 1, 1}, 2, 2, 1).rgb;
   CHECK(rgb[0] > 230);
 }
 

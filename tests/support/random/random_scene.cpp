@@ -272,7 +272,7 @@ NodeId random_domain_node(compiler::NodeMaker& maker, Random& random, NodeId chi
   // The program grows with the number of copies; 16 are enough for tests.
   const compiler::NodeSpec& row = compiler::spec(kind);
   if (kind == Kind::Repetition) {
-    const compiler::Knowledge known[] = {maker.known(child)};
+    const compiler::NodeFacts known[] = {maker.known(child)};
     if (row.code(row.with_derived(params, known)).points.size() > 16) return child;
   }
   return maker.make(kind, params, only);

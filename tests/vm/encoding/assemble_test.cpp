@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
 #include "vm/encoding/disassemble.h"
@@ -36,7 +36,7 @@ void refused(const std::string& text, const std::string& at, const std::string& 
 }  // namespace
 
 TEST_CASE("random programs read back from their listings", "[assemble]") {
-  const int count = few(10000);
+  const int count = scaled_cases(10000);
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 60);
@@ -61,9 +61,9 @@ TEST_CASE("a program may be written without any of the listing's columns", "[ass
       "min x -2.5\n");
   vm::Program expected;
   expected.locals = 1;
-  expected.append(vm::Opcode::Sphere, vm::kMoved, {0, 1, 0, 0.5}, {});
+  expected.append(vm::Opcode::Sphere, vm::kFusedTranslate, {0, 1, 0, 0.5}, {});
   expected.append(vm::Opcode::Tee, 0, {}, {});
-  expected.append(vm::Opcode::Sphere, vm::kJoined, {0.25}, {});
+  expected.append(vm::Opcode::Sphere, vm::kFusedMin, {0.25}, {});
   expected.append(vm::Opcode::Add, vm::operand_of({vm::Source::Stack, vm::Source::Local, 0}), {}, {});
   expected.append(vm::Opcode::Min, vm::operand_of({vm::Source::X, vm::Source::Constant, 0}), {-2.5}, {});
   expected.debug.clear();

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
 #include "vm/interpret/evaluate.h"
@@ -33,7 +33,7 @@ vm::VerifiedProgram program_of(Random& random, int seed) { return random_program
 }  // namespace
 
 TEST_CASE("random programs read back from their bytes", "[binary]") {
-  const int count = few(10000);
+  const int count = scaled_cases(10000);
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = program_of(random, seed);
@@ -58,7 +58,7 @@ TEST_CASE("random programs read back from their bytes", "[binary]") {
 TEST_CASE("of a program's bytes every cut is refused, and every changed byte is refused or another sound program",
           "[binary]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(40); ++seed) {
+  for (int seed = 0; seed < scaled_cases(40); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const std::vector<std::uint8_t> bytes = bytes_of(program_of(random, seed % 12));
     for (std::size_t size = 0; size < bytes.size(); ++size) {

@@ -61,9 +61,9 @@ TEST_CASE("a reader never leaves its bytes", "[bytes]") {
     out.raw(std::vector<std::uint8_t>(16));
     vm::ByteReader enough(out.bytes());
     CHECK(enough.count(4) == 5);
-    vm::ByteReader few(out.bytes());
-    CHECK(few.count(5) == 0);
-    CHECK(few.failed());
+    vm::ByteReader scaled_cases(out.bytes());
+    CHECK(scaled_cases.count(5) == 0);
+    CHECK(scaled_cases.failed());
   }
 }
 

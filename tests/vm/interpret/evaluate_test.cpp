@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -229,7 +229,7 @@ long check_ranges(std::uint64_t first_seed, std::uint64_t count, int points, Jud
 }  // namespace
 
 TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
-  CHECK(check_ranges(0, few(500), 30, Judged::Yes) >= few(300000));
+  CHECK(check_ranges(0, scaled_cases(500), 30, Judged::Yes) >= scaled_cases(300000));
 }
 
 TEST_CASE("ranges contain every one of a hundred million values in their boxes", "[nightly][.]") {
@@ -239,7 +239,7 @@ TEST_CASE("ranges contain every one of a hundred million values in their boxes",
 TEST_CASE("ranges of small boxes are narrow", "[evaluate][range]") {
   vm::Workspace workspace;
   int boxes = 0, narrow = 0;
-  for (int seed = 0; seed < few(500); ++seed) {
+  for (int seed = 0; seed < scaled_cases(500); ++seed) {
     Random random(seed);
     const vm::VerifiedProgram program = plain_lowering(scene_of(seed, false));
     for (int i = 0; i < 10; ++i, ++boxes) {
@@ -271,7 +271,7 @@ TEST_CASE("ranges of unbounded boxes are ranges", "[evaluate][range]") {
 TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][surface]") {
   vm::Workspace workspace;
   int named = 0;
-  for (int seed = 0; seed < few(300); ++seed) {
+  for (int seed = 0; seed < scaled_cases(300); ++seed) {
     const compiler::Scene scene = scene_of(seed, false);
     const vm::VerifiedProgram program = plain_lowering(scene);
     Random random(seed);
@@ -289,7 +289,7 @@ TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][
       }
     }
   }
-  CHECK(named > few(10000));
+  CHECK(named > scaled_cases(10000));
 }
 
 // Regression: a Mandelbulb's point exactly at the bailout went on iterating when a neighbouring lane did, and

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/number/float_bits.h"
 #include "vm/range/slope.h"
 
@@ -75,7 +75,7 @@ TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa
 TEST_CASE("ranges of formulas contain their values", "[formula][range]") {
   vm::Workspace workspace;
   int finite = 0, boxes = 0;
-  for (int seed = 0; seed < few(20000); ++seed) {
+  for (int seed = 0; seed < scaled_cases(20000); ++seed) {
     const auto steps = random_formula(seed);
     const vm::VerifiedProgram program = formula(steps);
     Random random(seed);
@@ -132,7 +132,7 @@ TEST_CASE("gradients of formulas match differences", "[formula][gradient]") {
 TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]") {
   vm::Workspace workspace;
   int boxes = 0, lipschitz = 0, error = 0;
-  for (int seed = 0; seed < few(20000); ++seed) {
+  for (int seed = 0; seed < scaled_cases(20000); ++seed) {
     const auto steps = random_formula(seed);
     const vm::VerifiedProgram program = formula(steps);
     Random random(seed + 7);

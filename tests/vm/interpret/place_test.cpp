@@ -9,7 +9,7 @@
 #include "compiler/passes/passes.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
@@ -47,7 +47,7 @@ double error_of(const vm::SurfacePlace& found, const Verdict& verdict) {
 TEST_CASE("place: of random graphs it is the point at the innermost paint of what wins", "[vm][place]") {
   vm::Workspace workspace;
   int moved = 0;
-  for (int seed = 0; seed < few(600); ++seed) {
+  for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene scene = painted_scene(seed);
     const vm::VerifiedProgram program = surface_program(scene);
     INFO("seed " << seed << '\n' << compiler::print_graph(scene, compiler::Source{}));
@@ -67,12 +67,12 @@ TEST_CASE("place: of random graphs it is the point at the innermost paint of wha
       moved += glm::length(verdict.place - p) > 1e-3;
     }
   }
-  CHECK(moved > few(600));
+  CHECK(moved > scaled_cases(600));
 }
 
 TEST_CASE("place: it is of the surface that the distance is of", "[vm][place]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(300); ++seed) {
+  for (int seed = 0; seed < scaled_cases(300); ++seed) {
     const vm::VerifiedProgram program = surface_program(painted_scene(seed));
     Random random(seed);
     for (int i = 0; i < 30; ++i) {
@@ -85,7 +85,7 @@ TEST_CASE("place: it is of the surface that the distance is of", "[vm][place]") 
 
 TEST_CASE("place: without tags it is the point", "[vm][place]") {
   vm::Workspace workspace;
-  const auto scene = tests::compiled_objects(R"({"type": "sphere", "radius": 1, "translate": [3, 0, 0]})");
+  const auto scene = test::compiled_objects(R"({"type": "sphere", "radius": 1, "translate": [3, 0, 0]})");
   const vm::SurfacePlace found = vm::evaluate_place(scene.surface, {2, 1, 0}, workspace);
   CHECK(found.surface == 0);
   CHECK(found.place == dvec3(2, 1, 0));
@@ -93,7 +93,7 @@ TEST_CASE("place: without tags it is the point", "[vm][place]") {
 
 TEST_CASE("place: of two equal tags at one distance the first counts", "[vm][place]") {
   vm::Workspace workspace;
-  const auto scene = tests::compiled(R"({"version": 1,
+  const auto scene = test::compiled(R"({"version": 1,
       "materials": {"m": {"type": "diffuse", "space": "object", "color": {"pattern": "checker", "a": 0, "b": 1}}},
       "objects": [{"type": "union", "of": [{"type": "sphere", "radius": 1, "translate": [-2, 0, 0], "material": "m"},
         {"type": "sphere", "radius": 1, "translate": [2, 0, 0], "material": "m"}]}]})");
@@ -103,7 +103,7 @@ TEST_CASE("place: of two equal tags at one distance the first counts", "[vm][pla
 
 TEST_CASE("shares: two bodies of one surface have each its own share and place", "[vm][place]") {
   vm::Workspace workspace;
-  const auto scene = tests::compiled(R"({"version": 1,
+  const auto scene = test::compiled(R"({"version": 1,
       "materials": {"m": {"type": "diffuse", "space": "object", "color": {"pattern": "checker", "a": 0, "b": 1}}},
       "objects": [{"type": "smooth_union", "k": 0.5, "of": [
         {"type": "sphere", "radius": 1, "material": "m"},

@@ -64,9 +64,9 @@ TEST_CASE("a polygon is its exact distance, with a unit gradient", "[polygon]") 
                         random.uniform(-9, 9));
       const double truth = brute_force(xy, dvec2(p.x, p.y));
       INFO("seed " << seed << " at " << p.x << ' ' << p.y << ": " << truth);
-      const vm::SurfaceValue wide = vm::evaluate_surface(program, dvec3(p), workspace);
-      CHECK(std::abs(wide.distance - truth) <= 1e-14);
-      CHECK(std::abs(glm::length(wide.gradient) - 1) <= 1e-9);
+      const vm::SurfaceValue doubles = vm::evaluate_surface(program, dvec3(p), workspace);
+      CHECK(std::abs(doubles.distance - truth) <= 1e-14);
+      CHECK(std::abs(glm::length(doubles.gradient) - 1) <= 1e-9);
       CHECK(std::abs(evaluate_float(program, p, workspace) - truth) <= 10 * 0x1p-24 * 4);
     }
     for (std::size_t i = 0; i < xy.size() / 2; ++i) {  // on the outline
@@ -122,14 +122,14 @@ TEST_CASE("an outline has whole groups, enough of them, all finite", "[polygon][
   CHECK(refusal(polygon_code({0, 0, 1, 0})).find("at least 3") != std::string::npos);
   CHECK(refusal(polygon_code({})).find("at least 3") != std::string::npos);
   vm::Program cut = polygon_code(triangle);
-  cut.words.pop_back(), cut.wide.pop_back();
+  cut.words.pop_back(), cut.doubles.pop_back();
   CHECK(refusal(cut).find("cut off") != std::string::npos);
   vm::Program huge = polygon_code(triangle);
   huge.words[0] = vm::opcode_word(Opcode::Polygon, vm::kMaxOperand);
   CHECK(refusal(huge).find("cut off") != std::string::npos);
   CHECK(refusal(polygon_code({0, 0, 1, 0, 0, 1e39})).find("y is not finite") != std::string::npos);
   vm::Program differs = polygon_code(triangle);
-  differs.wide[5] = 0.5;
+  differs.doubles[5] = 0.5;
   CHECK(refusal(differs).find("wide table") != std::string::npos);
 }
 

@@ -103,7 +103,7 @@ TEST_CASE("in double, one point at a time or many: the same bits of the scenes t
     std::ostringstream text;
     text << std::ifstream(entry.path()).rdbuf();
     INFO(entry.path());
-    check_bits(tests::compiled(text.str()).distance, 1, 60);
+    check_bits(test::compiled(text.str()).distance, 1, 60);
   }
 }
 

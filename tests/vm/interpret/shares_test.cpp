@@ -10,7 +10,7 @@ namespace fathom::vm::shares_test {
 namespace {
 
 compiler::CompiledScene blend_of(const std::string& combinator) {
-  return tests::compiled(R"({"version": 1,
+  return test::compiled(R"({"version": 1,
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}, "c": {"type": "transparent"}},
       "objects": [{)" + combinator +
                          R"(, "of": [{"type": "sphere", "radius": 1, "material": "a"},
@@ -64,7 +64,7 @@ TEST_CASE("shares: far from a blend, and in a plain union, one surface has all",
 }
 
 TEST_CASE("shares: what a blend mixes is known, also where a part has its material from above", "[vm]") {
-  const auto scene = tests::compiled(R"({"version": 1,
+  const auto scene = test::compiled(R"({"version": 1,
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}},
       "objects": [{"type": "smooth_union", "k": 0.5, "material": "a", "of": [{"type": "sphere", "radius": 1},
           {"type": "sphere", "radius": 1, "translate": [1.5, 0, 0], "material": "b"}]},

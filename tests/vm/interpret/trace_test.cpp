@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "vm/interpret/evaluate.h"
@@ -18,25 +18,25 @@ namespace fathom::test::trace_test {
 
 TEST_CASE("a trace's last value is the program's, and its stacks are as high as the verifier says", "[trace]") {
   vm::Workspace workspace;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 40);
     const glm::dvec3 point = random.in_box(2);
     const float x = static_cast<float>(point.x), y = static_cast<float>(point.y), z = static_cast<float>(point.z);
     float expected = 0;
     vm::evaluate_distance(program, {&x, &y, &z}, 1, &expected, workspace);
-    std::size_t steps = 0, most_values = 0, most_points = 1;
+    std::size_t steps = 0, max_values = 0, max_points = 1;
     vm::TraceStep last;
     vm::trace(program, point, [&](const vm::TraceStep& step) {
       ++steps;
-      most_values = std::max(most_values, step.values.size());
-      most_points = std::max(most_points, step.points.size());
+      max_values = std::max(max_values, step.values.size());
+      max_points = std::max(max_points, step.points.size());
       last = step;
     });
     CAPTURE(seed);
     CHECK(steps == program.instructions());
-    CHECK(most_values == program.max_values());
-    CHECK(most_points == program.max_points());
+    CHECK(max_values == program.max_values());
+    CHECK(max_points == program.max_points());
     REQUIRE(last.values.size() == 1);
     REQUIRE(last.points.size() == 1);
     const bool both_nan = std::isnan(expected) && std::isnan(last.values[0]);

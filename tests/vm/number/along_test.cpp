@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "compiler/shapes/make_node.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/vm/interpret/formula.h"
 
@@ -147,7 +147,7 @@ TEST_CASE("along a line: values and slopes are within the bounds, of every opcod
 
 TEST_CASE("along a line: values are the judge's", "[along]") {
   vm::Workspace workspace;
-  for (int seed = 1; seed < few(600); seed += 2) {
+  for (int seed = 1; seed < scaled_cases(600); seed += 2) {
     Random random(seed);
     const compiler::Scene scene = random_scene(random);
     const vm::VerifiedProgram program = plain_lowering(scene);

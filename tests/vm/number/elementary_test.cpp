@@ -172,8 +172,8 @@ TEST_CASE("atan2 and pow against libm", "[elementary]") {
     const double truth = std::pow(double(q.x), q.y), arg = std::abs(q.y * std::log(double(q.x)));
     if (truth > 1e-37 && truth < 3e38) {
       worst_power = std::max(worst_power, ulps(evaluate_float(power, q, workspace), truth) / (2 + 2 * arg));
-      const double wide = vm::evaluate_distance(power, glm::dvec3(q), workspace);
-      worst_double = std::max(worst_double, std::abs(wide / truth - 1) / (1 + arg));
+      const double doubles = vm::evaluate_distance(power, glm::dvec3(q), workspace);
+      worst_double = std::max(worst_double, std::abs(doubles / truth - 1) / (1 + arg));
     }
   }
   INFO("atan2 " << worst_angle << " ulp; pow " << worst_power << " of (2 + 2 |y log x|) ulp; double "
@@ -275,8 +275,8 @@ TEST_CASE("binary mathematics by its table", "[elementary]") {
     const float value = float_of(row.opcode, row.a, row.b);
     CHECK((same(value, row.result) || std::abs(value - row.result) <= tolerance * std::abs(row.result)));
     const auto program = formula({{Opcode::X}, {Opcode::Y}, {row.opcode}});
-    const double wide = vm::evaluate_distance(program, glm::dvec3(row.a, row.b, 0), workspace);
-    CHECK((same(float(wide), row.result) || std::abs(wide - row.result) <= tolerance * std::abs(row.result)));
+    const double doubles = vm::evaluate_distance(program, glm::dvec3(row.a, row.b, 0), workspace);
+    CHECK((same(float(doubles), row.result) || std::abs(doubles - row.result) <= tolerance * std::abs(row.result)));
   }
 }
 

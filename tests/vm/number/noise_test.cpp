@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge_noise.h"
 #include "tests/vm/range/boxes.h"
 #include "vm/number/noise_bounds.h"
@@ -92,7 +92,7 @@ double most_of_directions(const Bounds (&v)[3]) {
 // weight times the two largest of |p - corner|. The bound is the value at the piece's centre plus what the
 // derivatives can add on the way from there. The derivatives are summed over the corners first, because near a
 // maximum most of the sum cancels.
-double most_value(const Piece& piece) {
+double max_value(const Piece& piece) {
   const AxisWeights axes[3] = {weights(piece.at[0]), weights(piece.at[1]), weights(piece.at[2])};
   Bounds rises[3] = {{0, 0}, {0, 0}, {0, 0}};
   double middle = 0, half[3], middle_weights[3][2], middle_from[3][2];
@@ -133,7 +133,7 @@ double most_value(const Piece& piece) {
 // Upper bound of the derivative along a direction on a piece. Along s the derivative is the sum over corners of g .
 // ((s . grad w) (p - corner) + w s). Its maximum over g is convex in s, so over a square of directions it is largest
 // in a corner of the square.
-double most_slope(const Piece& piece) {
+double max_slope(const Piece& piece) {
   const AxisWeights x = weights(piece.at[0]), y = weights(piece.at[1]), z = weights(piece.at[2]);
   double most = 0;
   for (int end = 0; end < 4; ++end) {
@@ -175,7 +175,7 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
   const vm::VerifiedProgram program = noise_program();
   double worst = 0;
   for (const double reach : {2.0, 40.0, 1000.0, 4e6}) {
-    const Cloud cloud = noise_points(random, reach, static_cast<std::size_t>(few(40000)));
+    const Cloud cloud = noise_points(random, reach, static_cast<std::size_t>(scaled_cases(40000)));
     const std::vector<float> values = distances(program, cloud, workspace);
     for (std::size_t i = 0; i < cloud.size(); ++i) {
       const dvec3 p(cloud.x[i], cloud.y[i], cloud.z[i]);
@@ -190,11 +190,11 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
 }
 
 TEST_CASE("noise is within its range, and no steeper than its slope, whatever the hash", "[noise][released]") {
-  CHECK(is_proved({}, kNoiseRange, false, 3'000'000, most_value));
-  CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, most_slope));
+  CHECK(is_proved({}, kNoiseRange, false, 3'000'000, max_value));
+  CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, max_slope));
   // The bounds are nearly tight: in the middle of a cell the gradients can be such that the slope is 3.75.
-  CHECK_FALSE(is_proved({}, 1.0363, false, 100'000, most_value));
-  CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, most_slope));
+  CHECK_FALSE(is_proved({}, 1.0363, false, 100'000, max_value));
+  CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, max_slope));
 }
 
 TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", "[noise][heavy]") {
@@ -205,7 +205,7 @@ TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", 
       Piece piece;
       piece.at[axis] = {static_cast<double>(i) / 16, static_cast<double>(i + 1) / 16};
       CAPTURE(i, axis);
-      CHECK(is_proved(piece, vm::kNoiseSlopes[i], true, 8'000'000, most_slope));
+      CHECK(is_proved(piece, vm::kNoiseSlopes[i], true, 8'000'000, max_slope));
       CHECK(vm::noise_slope(piece.at[axis].hi) == vm::kNoiseSlopes[i]);
     }
   }
@@ -215,7 +215,7 @@ TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[
   vm::Workspace workspace;
   Random random(2);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(2000); ++n) {
+  for (int n = 0; n < scaled_cases(2000); ++n) {
     dvec3 p = random.in_box(20), step(0);
     const int axis = random.below(3);
     p[axis] = std::round(p[axis]);
@@ -237,7 +237,7 @@ TEST_CASE("the gradient of noise is the slope of its values", "[noise]") {
   vm::Workspace workspace;
   Random random(3);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(2000); ++n) {
+  for (int n = 0; n < scaled_cases(2000); ++n) {
     const dvec3 p = random.in_box(50);
     const dvec3 gradient = vm::evaluate_surface(program, p, workspace).gradient;
     for (int axis = 0; axis < 3; ++axis) {
@@ -316,7 +316,7 @@ TEST_CASE("what is said of noise over boxes holds, and of small ones it is close
   Random random(5);
   const vm::VerifiedProgram program = noise_program();
   double width = 0, spread = 0, said = 0, met = 0;
-  for (int n = 0; n < few(6000); ++n) {
+  for (int n = 0; n < scaled_cases(6000); ++n) {
     static const double kSides[] = {0, 1e-3, 0.03, 0.03, 0.5, 1.5};
     dvec3 lo = random.in_box(30), hi;
     const double side = kSides[n % 6];
@@ -358,7 +358,7 @@ TEST_CASE("enclosures of noise hold every float, and of small boxes they are sma
   vm::Workspace workspace;
   Random random(6);
   const vm::VerifiedProgram program = noise_program();
-  for (int n = 0; n < few(400); ++n) {
+  for (int n = 0; n < scaled_cases(400); ++n) {
     BoxSet boxes = random_boxes(random);
     for (std::size_t i = 0; i < kEnclosedBoxes; i += 4) {
       for (int axis = 0; axis < 3; ++axis) {

@@ -1,4 +1,4 @@
-// Compares the convexity radius that programs compute (vm/number/convex-inl.h) with the definition of a convex
+// Compares the convexity radius that programs compute (vm/number/convexity-inl.h) with the definition of a convex
 // function: no chord lies below the function.
 #include "vm/program/convexity.h"
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compiler/shapes/bounds.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"
@@ -67,12 +67,12 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
 TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
   vm::Workspace workspace;
   int far_reaching = 0, tried = 0;
-  for (int seed = 0; seed < few(400); ++seed) {
+  for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     GraphOptions options;
     options.depth = 3;
     const compiler::Scene scene = random_scene(random, options);
-    const compiler::Knowledge known = compiler::analyse(scene.graph)[scene.root];
+    const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];
     if (!known.certified || !std::isfinite(known.lipschitz)) continue;
     const vm::VerifiedProgram program = plain_lowering(scene);
     for (int i = 0; i < 200; ++i) {
@@ -97,8 +97,8 @@ TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
       CHECK(f[1] <= chord + 1e-8);
     }
   }
-  CHECK(tried > few(4000));
-  CHECK(far_reaching > few(2000));
+  CHECK(tried > scaled_cases(4000));
+  CHECK(far_reaching > scaled_cases(2000));
 }
 
 TEST_CASE("convexity: distances beside it have the same bits, and it has them on every instruction set",

@@ -1,7 +1,7 @@
 // Checks the opcodes without Fact::Expansive: their result never changes faster than their point moves.
 #include <set>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/range/boxes.h"
 #include "vm/program/opcode_rows.h"
 
@@ -27,9 +27,9 @@ std::vector<Row> rows_of(const vm::VerifiedProgram& program, vm::Form form) {
     const auto begin = static_cast<std::ptrdiff_t>(at);
     const auto end = begin + static_cast<std::ptrdiff_t>(vm::instruction_length(from.words[at]));
     row.code.words.assign(from.words.begin() + begin, from.words.begin() + end);
-    row.code.wide.assign(from.wide.begin() + begin, from.wide.begin() + end);
+    row.code.doubles.assign(from.doubles.begin() + begin, from.doubles.begin() + end);
     row.name = std::string(info.mnemonic);
-    for (std::size_t i = 1; i < row.code.wide.size(); ++i) row.name += " " + std::to_string(row.code.wide[i]);
+    for (std::size_t i = 1; i < row.code.doubles.size(); ++i) row.name += " " + std::to_string(row.code.doubles[i]);
     rows.push_back(std::move(row));
   }
   return rows;
@@ -72,7 +72,7 @@ TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosu
       for (const Row& row : rows_of(sampled.program, form)) {
         seen.insert(static_cast<Opcode>(row.code.words[0] & 0xff));
         const auto parts = parts_of(row, form);
-        for (int i = 0; i < few(40); ++i) {
+        for (int i = 0; i < scaled_cases(40); ++i) {
           const double far = random.chance(0.2) ? random.length(1, 1e3) : 1;
           const glm::dvec3 p = random.in_box(3) * far, q = p + random.direction() * random.length(1e-5, 10) * far;
           const glm::dvec3 from = image_of(parts, p, workspace), to = image_of(parts, q, workspace);

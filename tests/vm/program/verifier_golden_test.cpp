@@ -40,11 +40,11 @@ std::uint32_t opcode_named(const std::string& name) {
 void append_word(vm::Program& program, const std::string& token) {
   const std::string text = token.substr(token.find_first_of("=#") + 1);
   std::uint32_t word = 0;
-  double wide = 0;
+  double doubles = 0;
   if (token.starts_with("f=")) {
     const float value = std::strtof(text.c_str(), nullptr);
     const std::size_t slash = text.find('/');
-    wide = slash == text.npos ? static_cast<double>(value) : std::strtod(text.c_str() + slash + 1, nullptr);
+    doubles = slash == text.npos ? static_cast<double>(value) : std::strtod(text.c_str() + slash + 1, nullptr);
     word = std::bit_cast<std::uint32_t>(value);
   } else if (token.starts_with("i=")) {
     word = static_cast<std::uint32_t>(std::strtoul(text.c_str(), nullptr, 10));
@@ -56,7 +56,7 @@ void append_word(vm::Program& program, const std::string& token) {
     word = opcode_named(token.substr(0, colon)) | static_cast<std::uint32_t>(operand) << 8;
   }
   program.words.push_back(word);
-  program.wide.push_back(wide);
+  program.doubles.push_back(doubles);
 }
 
 std::string verdict(const std::string& input) {
@@ -85,6 +85,6 @@ std::string verdict(const std::string& input) {
 
 }  // namespace
 
-TEST_CASE("golden verifier rules", "[verify]") { tests::check_golden("verifier", verdict); }
+TEST_CASE("golden verifier rules", "[verify]") { test::check_golden("verifier", verdict); }
 
 }  // namespace fathom::test::verifier_golden_test

@@ -79,7 +79,7 @@ TEST_CASE("a program that keeps the rules passes with its stack heights", "[veri
 TEST_CASE("every opcode must exist", "[verify]") {
   Program program = program_of({kSphere});
   program.words.push_back(vm::kOpcodeCount);
-  program.wide.push_back(0);
+  program.doubles.push_back(0);
   refused(program, 2, "no opcode " + std::to_string(vm::kOpcodeCount));
   program.words.back() = 255;
   refused(program, 2, "no opcode 255");
@@ -90,7 +90,7 @@ TEST_CASE("no instruction may be cut off", "[verify]") {
   for (std::size_t keep : {3u, 4u, 5u}) {
     Program cut = program;
     cut.words.resize(keep);
-    cut.wide.resize(keep);
+    cut.doubles.resize(keep);
     refused(cut, 2, "box is cut off");
   }
 }
@@ -127,10 +127,10 @@ TEST_CASE("only some instructions have an operand", "[verify]") {
 
 TEST_CASE("operands of shapes and functions are ones they have", "[verify]") {
   const auto modes = [](std::uint32_t operand) { return Instruction{Opcode::Sphere, {1, 2, 3, 0.5}, operand}; };
-  CHECK(passes(program_of({modes(vm::kMoved)})));
-  CHECK(passes(program_of({kSphere, modes(vm::kMoved | vm::kJoined)})));
-  refused(program_of({modes(vm::kMoved | vm::kJoined)}), 0, "sphere needs 1 values, the stack holds 0");
-  Program moved = program_of({modes(vm::kMoved)});
+  CHECK(passes(program_of({modes(vm::kFusedTranslate)})));
+  CHECK(passes(program_of({kSphere, modes(vm::kFusedTranslate | vm::kFusedMin)})));
+  refused(program_of({modes(vm::kFusedTranslate | vm::kFusedMin)}), 0, "sphere needs 1 values, the stack holds 0");
+  Program moved = program_of({modes(vm::kFusedTranslate)});
   moved.words[3] = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::infinity());
   refused(moved, 0, "sphere: z is not finite");
 
@@ -158,7 +158,7 @@ TEST_CASE("immediates are finite, in float and in double", "[verify]") {
     program.words[3] = std::bit_cast<std::uint32_t>(bad);
     refused(program, 0, "translate: z is not finite");
     program = program_of({kMove, kSphere, kDrop});
-    program.wide[5] = bad;
+    program.doubles[5] = bad;
     refused(program, 4, "sphere: radius is not finite");
   }
   CHECK(passes(program_of({{Opcode::Sphere, {3.4e38}}})));
@@ -167,9 +167,9 @@ TEST_CASE("immediates are finite, in float and in double", "[verify]") {
 
 TEST_CASE("the wide table is as long as the code", "[verify]") {
   Program program = program_of({kSphere});
-  program.wide.pop_back();
+  program.doubles.pop_back();
   refused(program, 0, "wide");
-  program.wide.resize(3);
+  program.doubles.resize(3);
   refused(program, 0, "wide");
 }
 
@@ -226,7 +226,7 @@ TEST_CASE("random words are refused or run: nothing in between", "[verify]") {
         program.words.push_back(vm::is_integer_immediate(*row, k) ? 3 : 0);
       }
     }
-    program.wide.assign(program.words.size(), 0);
+    program.doubles.assign(program.words.size(), 0);
     const auto result = vm::verify(program);
     if (const auto* ok = std::get_if<vm::VerifiedProgram>(&result)) {
       ++passed;

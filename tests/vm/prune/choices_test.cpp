@@ -17,7 +17,7 @@ vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_
   vm::Program code;
   code.locals = from.locals + 1;
   code.words.assign(from.words.begin(), from.words.begin() + static_cast<std::ptrdiff_t>(end));
-  code.wide.assign(from.wide.begin(), from.wide.begin() + static_cast<std::ptrdiff_t>(end));
+  code.doubles.assign(from.doubles.begin(), from.doubles.begin() + static_cast<std::ptrdiff_t>(end));
   int values = 0, points = 1;
   for (std::size_t at = 0; at < end; at += vm::instruction_length(code.words[at])) {
     const vm::StackEffect effect = vm::effect_of(code.words[at]);
@@ -83,7 +83,7 @@ TEST_CASE("enclosures of fused programs are those of plain ones, choice for choi
     {"type": "subtraction", "of": [{"type": "torus", "major_radius": 2, "minor_radius": 0.3}, {"type": "sphere", "radius": 2}]})";
   compiler::CompileOptions plain;
   plain.stop_after = std::string(compiler::pass_names()[compiler::pass_names().size() - 2]);
-  const auto a = tests::compiled_objects(objects).distance, b = tests::compiled_objects(objects, plain).distance;
+  const auto a = test::compiled_objects(objects).distance, b = test::compiled_objects(objects, plain).distance;
   REQUIRE(a.instructions() < b.instructions());
   REQUIRE(a.choices() == b.choices());
   for (int i = 0; i < 20; ++i) {
@@ -104,7 +104,7 @@ TEST_CASE("enclosures of fused programs are those of plain ones, choice for choi
 TEST_CASE("a choice between far spheres is decided, between near ones it is not", "[enclosure]") {
   vm::Program code;
   code.append(Opcode::Sphere, 0, {1}, {});
-  code.append(Opcode::Sphere, vm::kMoved | vm::kJoined, {4, 0, 0, 1}, {});
+  code.append(Opcode::Sphere, vm::kFusedTranslate | vm::kFusedMin, {4, 0, 0, 1}, {});
   const vm::VerifiedProgram program = verified(std::move(code));
   REQUIRE(program.choices() == 1);
   vm::Workspace workspace;

@@ -12,7 +12,7 @@
 
 #include "compiler/lower/fuse.h"
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/random/random_scene.h"
@@ -63,13 +63,13 @@ PointSet points_in(const BoxSet& boxes, std::size_t box, Random& random) {
 }
 
 // The part's words as a program, for the verifier.
-vm::Program as_program(const vm::Part& part) {
+vm::Program as_program(const vm::PrunedProgram& part) {
   vm::Program program;
-  program.words = part.words, program.wide = part.wide, program.locals = part.locals;
+  program.words = part.words, program.doubles = part.doubles, program.locals = part.locals;
   return program;
 }
 
-bool sound(const vm::Part& part) {
+bool sound(const vm::PrunedProgram& part) {
   const auto verified = vm::verify(as_program(part));
   const auto* program = std::get_if<vm::VerifiedProgram>(&verified);
   if (program == nullptr) {
@@ -92,7 +92,7 @@ bool agrees(float whole, float part, float least, float most) {
   return part == whole || (std::isnan(part) && std::isnan(whole));
 }
 
-void compare(const vm::Code& whole, const vm::Part& part, const BoxSet& boxes, std::size_t box, float least,
+void compare(const vm::Code& whole, const vm::PrunedProgram& part, const BoxSet& boxes, std::size_t box, float least,
              float most, Random& random, Tally& tally) {
   const PointSet points = points_in(boxes, box, random);
   std::vector<float> a(kPoints), b(kPoints);
@@ -107,18 +107,18 @@ void compare(const vm::Code& whole, const vm::Part& part, const BoxSet& boxes, s
 
 // Specialises a program for random boxes and limits, and each part again for a smaller box.
 void cut(const vm::Code& whole, Random& random, Tally& tally) {
-  const vm::Part first = vm::whole(whole);
+  const vm::PrunedProgram first = vm::whole(whole);
   vm::Workspace workspace;
   vm::Specialiser specialiser, again;
   const BoxSet boxes = random_box_set(random);
-  REQUIRE(specialiser.look(first, boxes.view(), workspace));
+  REQUIRE(specialiser.enclose_choices(first, boxes.view(), workspace));
   static const float kLimits[][2] = {
       {-kInfinity, kInfinity}, {-kInfinity, 0.25f}, {0, 0}, {-0.1f, 0.1f}, {-kInfinity, 1e-3f}};
   for (const auto& [least, most] : kLimits) {
-    specialiser.decide(least, most);
+    specialiser.resolve(least, most);
     for (std::size_t box = 0; box < vm::kEnclosedBoxes; box += 3) {
-      vm::Part part, smaller;
-      specialiser.part(box, part);
+      vm::PrunedProgram part, smaller;
+      specialiser.prune(box, part);
       REQUIRE(sound(part));
       tally.cut += part.words.size() < first.words.size();
       compare(whole, part, boxes, box, least, most, random, tally);
@@ -129,9 +129,9 @@ void cut(const vm::Code& whole, Random& random, Tally& tally) {
           within.hi[axis][i] = boxes.lo[axis][box] + (boxes.hi[axis][box] - boxes.lo[axis][box]) / 2;
         }
       }
-      REQUIRE(again.look(part, within.view(), workspace));
-      again.decide(least, most);
-      again.part(0, smaller);
+      REQUIRE(again.enclose_choices(part, within.view(), workspace));
+      again.resolve(least, most);
+      again.prune(0, smaller);
       REQUIRE(sound(smaller));
       compare(whole, smaller, within, 0, least, most, random, tally);
     }
@@ -190,7 +190,7 @@ void random_range(Random& random, float& lo, float& hi) {
 
 TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
   Tally tally;
-  for (int seed = 0; seed < few(200); ++seed) {
+  for (int seed = 0; seed < scaled_cases(200); ++seed) {
     Random random(seed);
     const vm::VerifiedProgram plain = plain_lowering(random_scene(random));
     auto fused = vm::verify(compiler::fuse(plain.program()));
@@ -201,8 +201,8 @@ TEST_CASE("specialise: parts of random scenes give the whole programs' bits in t
     cut(std::get<vm::VerifiedProgram>(fused), random, tally);
     CHECK(tally.wrong == before);
   }
-  CHECK(tally.compared > static_cast<std::size_t>(few(250'000)));
-  CHECK(tally.cut > static_cast<std::size_t>(few(5'000)));
+  CHECK(tally.compared > static_cast<std::size_t>(scaled_cases(250'000)));
+  CHECK(tally.cut > static_cast<std::size_t>(scaled_cases(5'000)));
 }
 
 TEST_CASE("specialise: parts by bounds of the exact function equal it, in double and in float",
@@ -215,13 +215,13 @@ TEST_CASE("specialise: parts by bounds of the exact function equal it, in double
     const auto steps = random_choices(random, 2 + random.below(6));
     const vm::VerifiedProgram program = formula(steps);
     const auto subexpressions_of = subexpressions(steps);
-    const vm::Part whole = vm::whole(program);
+    const vm::PrunedProgram whole = vm::whole(program);
     glm::dvec3 lo, hi;
     random_box(random, lo, hi);
-    const vm::SlopeBound bound = specialiser.look(whole, lo, hi, workspace);
-    specialiser.decide(-kInfinity, kInfinity);
-    vm::Part part;
-    specialiser.part(0, part);
+    const vm::SlopeBound bound = specialiser.enclose_choices(whole, lo, hi, workspace);
+    specialiser.resolve(-kInfinity, kInfinity);
+    vm::PrunedProgram part;
+    specialiser.prune(0, part);
     INFO("seed " << seed << ": " << text_of(steps));
     REQUIRE(sound(part));
     cut += part.words.size() < whole.words.size();
@@ -261,9 +261,9 @@ TEST_CASE("specialise: operands that only float holds apart are kept for the exa
     const auto program = formula(
         {{vm::Opcode::X}, {vm::Opcode::X}, {vm::Opcode::Offset, {-gap}}, {vm::Opcode::SmoothMin, {k, 1 / (4 * k)}}});
     vm::Specialiser specialiser;
-    const vm::Part whole = vm::whole(program);
-    specialiser.look(whole, glm::dvec3(0), glm::dvec3(0), workspace);
-    specialiser.decide(-kInfinity, kInfinity);
+    const vm::PrunedProgram whole = vm::whole(program);
+    specialiser.enclose_choices(whole, glm::dvec3(0), glm::dvec3(0), workspace);
+    specialiser.resolve(-kInfinity, kInfinity);
     CHECK((specialiser.choices_left(0) == 0) == (gap > k * (1 + 1e-6)));
   }
 }
@@ -279,18 +279,18 @@ TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[
   vm::Workspace workspace;
   for (const std::vector<Step>& steps : programs) {
     const vm::VerifiedProgram program = formula(steps);
-    const vm::Part whole = vm::whole(program);
+    const vm::PrunedProgram whole = vm::whole(program);
     BoxSet boxes;
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       for (int axis = 0; axis < 3; ++axis) boxes.lo[axis][i] = 1, boxes.hi[axis][i] = 2;
       boxes.lo[0][i] = -1;
     }
     vm::Specialiser specialiser;
-    REQUIRE(specialiser.look(whole, boxes.view(), workspace));
+    REQUIRE(specialiser.enclose_choices(whole, boxes.view(), workspace));
     for (const float most : {0.f, 0.25f}) {
-      specialiser.decide(-kInfinity, most);
-      vm::Part part;
-      specialiser.part(0, part);
+      specialiser.resolve(-kInfinity, most);
+      vm::PrunedProgram part;
+      specialiser.prune(0, part);
       INFO(text_of(steps) << " up to " << most);
       for (const float x : {-1.f, -1e-30f}) {
         const glm::vec3 p(x, 1.5f, 1);
@@ -318,11 +318,11 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
     vm::ChoiceBounds& same = bounds.emplace_back();
     same.a_lo[0] = range.a_lo, same.a_hi[0] = range.a_hi, same.b_lo[0] = range.b_lo, same.b_hi[0] = range.b_hi;
   }
-  std::vector<vm::Interest> interest(links.size());
-  std::vector<vm::KeptOperands> pairs(links.size()), all(links.size());
-  vm::settle_pairs(links.data(), ranges.data(), links.size(), pairs.data());
-  vm::settle_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity, 0,
-                     interest.data(), all.data());
+  std::vector<vm::DemandedRange> demanded(links.size());
+  std::vector<vm::LiveOperands> pairs(links.size()), all(links.size());
+  vm::resolve_pairs(links.data(), ranges.data(), links.size(), pairs.data());
+  vm::resolve_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity, 0,
+                     demanded.data(), all.data());
   int cut = 0, wrong = 0;
   for (std::size_t i = 0; i < links.size(); ++i) {
     wrong += pairs[i].a != (all[i].a & 1) || pairs[i].b != (all[i].b & 1);
@@ -340,20 +340,20 @@ TEST_CASE("a program that drops a point at which nothing was computed is no expr
   program.append(vm::Opcode::Sphere, 0, {1}, {});
   const auto verified = vm::verify(program);
   REQUIRE(std::holds_alternative<vm::VerifiedProgram>(verified));
-  vm::Expression expression;
+  vm::DefUseGraph expression;
   CHECK_FALSE(expression.read(std::get<vm::VerifiedProgram>(verified)));
 }
 
 TEST_CASE("any sound program can be read as an expression or is refused", "[specialise]") {
-  vm::Expression expression;
+  vm::DefUseGraph expression;
   int expressions = 0;
-  for (int seed = 0; seed < few(4000); ++seed) {
+  for (int seed = 0; seed < scaled_cases(4000); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = random_program(random, 1 + seed % 30);
     if (!expression.read(program)) continue;
     ++expressions;
     REQUIRE(expression.nodes().size() == program.instructions());
-    for (const vm::ExpressionNode& node : expression.nodes()) {
+    for (const vm::DefUseNode& node : expression.nodes()) {
       for (const std::uint32_t operand : {node.a, node.b, node.point}) {
         REQUIRE((operand == vm::kNone || operand <= expression.root()));
       }
@@ -378,7 +378,7 @@ TEST_CASE("places that are met again are found among a hundred thousand", "[spec
   }
   const auto verified = vm::verify(program);
   REQUIRE(std::holds_alternative<vm::VerifiedProgram>(verified));
-  vm::Expression expression;
+  vm::DefUseGraph expression;
   CHECK(expression.read(std::get<vm::VerifiedProgram>(verified)));
 }
 

@@ -80,9 +80,9 @@ class ImportLoader {
       tree_.statements[number].target = known->second;
       return;
     }
-    if (tree_.modules.size() > kMostImports) {
+    if (tree_.modules.size() > kMaxImports) {
       full_ = true;
-      return fail(span, fmt::format("the scene has more than {} imports", kMostImports),
+      return fail(span, fmt::format("the scene has more than {} imports", kMaxImports),
                   {"imports of a file without values for its parameters count once"});
     }
     const Source* file = file_of(path, span);

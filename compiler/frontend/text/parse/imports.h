@@ -41,7 +41,7 @@ struct Module;
 void append(Tree& tree, ParsedFile file, Module module);
 
 // Maximum number of modules for imported files.
-inline constexpr std::size_t kMostImports = 256;
+inline constexpr std::size_t kMaxImports = 256;
 
 // Adds the modules of all files that the tree's statements import. Reuses the files that `source` already contains,
 // and adds the others to `source`. Reports errors in all of them.

@@ -21,7 +21,7 @@ using Kind = Statement::Kind;
 
 // Maximum number of errors with a suggestion, which is also the number of errors printed. Finding the nearest name is
 // slow in a file with many names.
-constexpr std::size_t kMostSuggestions = 20;
+constexpr std::size_t kMaxSuggestions = 20;
 
 bool has_name(const Statement& statement) {
   return statement.kind == Kind::Import || statement.kind == Kind::Param || statement.kind == Kind::Let ||
@@ -333,7 +333,7 @@ class Resolver {
     std::vector<std::string> help;
     if (find_word(expr.name)) {
       help = {fmt::format("`{0}` is a function: {0}(...)", expr.name)};
-    } else if (diagnostics_.errors() < kMostSuggestions) {
+    } else if (diagnostics_.errors() < kMaxSuggestions) {
       help = {did_you_mean(expr.name, known_names())};
     }
     error("E0803", expr.span, fmt::format("unknown name `{}`", expr.name), "", std::move(help));

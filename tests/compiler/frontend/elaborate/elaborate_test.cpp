@@ -14,7 +14,7 @@
 #include "compiler/frontend/records/records.h"
 #include "compiler/frontend/syntax/json.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::elaborate_test {
 
@@ -37,7 +37,7 @@ TEST_CASE("one object is the root, several are a union", "[elaborate]") {
 }
 
 TEST_CASE("defaults are those of the documentation", "[elaborate]") {
-  const Elaborated e =
+  const ElaboratedScene e =
       of_objects(R"({"type": "sphere", "radius": 1})", R"(, "camera": {}, "film": {}, "render": {})");
   CHECK(e.camera.projection == Camera::Projection::Perspective);
   CHECK(e.camera.position == glm::dvec3(0, 0, 5));
@@ -74,7 +74,7 @@ TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
 }
 
 TEST_CASE("lights and skies are read", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
+  const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "background": {"type": "sky", "elevation": 30, "azimuth": 90, "turbidity": 5, "ground_albedo": [0.1, 0.2, 0.3],
                      "strength": 2, "sun_disc": false},
       "lights": {"bulb": {"type": "point", "position": [1, 2, 3], "intensity": [4, 5, 6]},
@@ -99,7 +99,7 @@ TEST_CASE("lights and skies are read", "[elaborate]") {
 }
 
 TEST_CASE("settings are read", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
+  const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
       "film": {"width": 65535, "height": 1, "exposure": -1.5, "tone": "agx"},
@@ -118,7 +118,7 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(e.settings.noise_threshold == 0.25);
   CHECK(e.background.bottom == glm::dvec3(0));
   CHECK(e.background.top == glm::dvec3(0.5, 0.7, 1));
-  const Elaborated o = of_objects(R"({"type": "sphere", "radius": 1})",
+  const ElaboratedScene o = of_objects(R"({"type": "sphere", "radius": 1})",
                                   R"(, "camera": {"type": "orthographic", "width": 7}, "background": [1, 2, 3])");
   CHECK(o.camera.projection == Camera::Projection::Orthographic);
   CHECK(o.camera.width == 7);
@@ -129,7 +129,7 @@ TEST_CASE("settings are read", "[elaborate]") {
 
 TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
-  const Elaborated e = of_objects(ball, R"(,
+  const ElaboratedScene e = of_objects(ball, R"(,
       "camera": {"position": [0, 0, 5], "focal_length": 50, "sensor_width": 24, "f_stop": 1.4, "focus": [7, 2, 1],
                  "blades": 6, "blade_rotation": 90},
       "film": {"filter": "mitchell", "filter_width": 3.5}, "render": {"sampler": "independent"})");
@@ -138,13 +138,13 @@ TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
   CHECK((e.camera.blades == 6 && e.camera.blade_rotation == Approx(std::numbers::pi / 2)));
   CHECK((e.film.filter == FilterKind::Mitchell && e.film.filter_width == 3.5));
   CHECK(e.settings.sampler == SamplerKind::Independent);
-  const Elaborated o = of_objects(ball, R"(, "camera": {"lens_radius": 0.2, "focus_distance": 3})");
+  const ElaboratedScene o = of_objects(ball, R"(, "camera": {"lens_radius": 0.2, "focus_distance": 3})");
   CHECK((o.camera.lens_radius == 0.2 && o.camera.focus_distance == 3.0 && !o.camera.f_stop));
   CHECK(of_objects(ball, R"(, "camera": {"type": "panorama"})").camera.projection == Camera::Projection::Panorama);
 }
 
 TEST_CASE("materials are read", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"type": "sphere", "radius": 1})", R"(, "materials": {
+  const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(, "materials": {
       "a": {"type": "diffuse", "color": [0.1, 0.2, 0.3]},
       "b": {"type": "emissive", "emission": [4, 5, 6]},
       "c": {"type": "specular"},
@@ -162,7 +162,7 @@ TEST_CASE("materials are read", "[elaborate]") {
 }
 
 TEST_CASE("equal nodes are one, whatever they are called", "[elaborate]") {
-  const Elaborated e =
+  const ElaboratedScene e =
       of_objects(R"({"type": "union", "of": [{"use": "a"}, {"use": "b"}, {"type": "sphere", "radius": 1}]})",
                  R"(, "nodes": {"a": {"type": "sphere", "radius": 1}, "b": {"use": "a"}})");
   CHECK(listing(e) == "%0 = sphere radius=1\n%1 = union %0 %0 %0\n%2 = paint surface=0 %1\n");
@@ -177,7 +177,7 @@ TEST_CASE("parameters stand in the node table's order", "[elaborate]") {
 }
 
 TEST_CASE("materials: the inner one wins, and each object has surfaces of its own", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"name": "pair", "material": "red", "type": "union", "of": [
+  const ElaboratedScene e = of_objects(R"({"name": "pair", "material": "red", "type": "union", "of": [
         {"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 2, "material": "blue"}]},
       {"use": "ball", "material": "red"}, {"use": "ball"})",
                                   kRedBlue + R"(, "nodes": {"ball": {"type": "sphere", "radius": 3}})");
@@ -195,7 +195,7 @@ TEST_CASE("materials: the inner one wins, and each object has surfaces of its ow
 }
 
 TEST_CASE("a definition's own material beats the one of its use", "[elaborate]") {
-  const Elaborated e =
+  const ElaboratedScene e =
       of_objects(R"({"use": "ball", "material": "red"})",
                  kRedBlue + R"(, "nodes": {"ball": {"type": "sphere", "radius": 1, "material": "blue"}})");
   CHECK(listing(e) == "%0 = sphere radius=1\n%1 = paint surface=0 %0\n");
@@ -203,7 +203,7 @@ TEST_CASE("a definition's own material beats the one of its use", "[elaborate]")
 }
 
 TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"type": "union", "of": [
+  const ElaboratedScene e = of_objects(R"({"type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "red"},
       {"type": "onion", "thickness": 1, "of": {"type": "sphere", "radius": 2, "material": "blue"}}]})",
                                   kRedBlue);
@@ -215,7 +215,7 @@ TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]
         "%4 = onion thickness=1 %3\n"
         "%5 = union %1 %4\n");
   CHECK(surfaces(e) == "union:red union:blue ");
-  const Elaborated same = of_objects(R"({"material": "red", "type": "union", "of": [
+  const ElaboratedScene same = of_objects(R"({"material": "red", "type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "red"}, {"type": "sphere", "radius": 2}]})",
                                      kRedBlue);
   CHECK(listing(same) == "%0 = sphere radius=1\n%1 = sphere radius=2\n%2 = union %0 %1\n%3 = paint surface=0 %2\n");
@@ -230,7 +230,7 @@ TEST_CASE("paint lies outside the transform of its node", "[elaborate]") {
 
 TEST_CASE("names of objects are unique", "[elaborate]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
-  const Elaborated e = of_objects(ball + "," + ball + R"(, {"name": "sphere 3", "type": "sphere", "radius": 1},)" +
+  const ElaboratedScene e = of_objects(ball + "," + ball + R"(, {"name": "sphere 3", "type": "sphere", "radius": 1},)" +
                                   ball + R"(, {"name": "sphere", "type": "sphere", "radius": 1})");
   CHECK(surfaces(e) == "sphere:default sphere 2:default sphere 3:default sphere 4:default sphere 5:default ");
 }
@@ -288,7 +288,7 @@ TEST_CASE("forty doublings take linear time and space", "[elaborate]") {
           R"(, "a{0}": {{"type": "union", "of": [{{"use": "a{1}"}}, {{"use": "a{1}", "translate": [{0}, 0, 0], "material": "blue"}}]}})",
           i, i - 1);
     }
-    const Elaborated e = of_objects(R"({"use": "a40"}, {"use": "a40"})", kRedBlue + R"(, "nodes": {)" + nodes + "}");
+    const ElaboratedScene e = of_objects(R"({"use": "a40"}, {"use": "a40"})", kRedBlue + R"(, "nodes": {)" + nodes + "}");
     CHECK(e.scene.graph.size() < 40 * 2 * 8);
   }
 }
@@ -306,16 +306,16 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
   CHECK(of_objects(nested(4000, R"({"type": "onion", "thickness": 1, "of": )", "}")).scene.graph.size() == 4002);
 
   std::string chain = R"("a0": {"type": "sphere", "radius": 1, "material": "red"})";
-  const int length = few(100000);
+  const int length = scaled_cases(100000);
   for (int i = 1; i <= length; ++i) chain += fmt::format(R"(, "a{}": {{"use": "a{}"}})", i, i - 1);
-  const Elaborated e =
+  const ElaboratedScene e =
       of_objects(fmt::format(R"({{"use": "a{}"}})", length), kRedBlue + R"(, "nodes": {)" + chain + "}");
   CHECK(e.scene.graph.size() == 2);
 }
 
 TEST_CASE("a long cycle is found without deep recursion", "[elaborate]") {
   std::string text = R"({"version": 1, "objects": [{"use": "a0"}], "nodes": {)";
-  const int length = few(100000);
+  const int length = scaled_cases(100000);
   for (int i = 0; i < length; ++i)
     text += fmt::format(R"({}"a{}": {{"use": "a{}"}})", i ? "," : "", i, (i + 1) % length);
   const Source source("scene.json", text + "}}");

@@ -15,11 +15,11 @@
 
 namespace fathom::test {
 
-inline compiler::Elaborated elaborated(const std::string& text, const compiler::Definitions& definitions = {}) {
+inline compiler::ElaboratedScene elaborated(const std::string& text, const compiler::Definitions& definitions = {}) {
   const compiler::Source source("scene.json", text);
   compiler::Diagnostics diagnostics;
   const auto file = compiler::read_json(source, diagnostics);
-  std::optional<compiler::Elaborated> out;
+  std::optional<compiler::ElaboratedScene> out;
   if (file) out = compiler::elaborate(*file, diagnostics, definitions);
   if (out) {
     const auto scene = compiler::derive(out->scene, out->type_spans, {}, diagnostics);
@@ -31,12 +31,12 @@ inline compiler::Elaborated elaborated(const std::string& text, const compiler::
   return std::move(*out);
 }
 
-inline compiler::Elaborated of_objects(const std::string& objects, const std::string& rest = "") {
+inline compiler::ElaboratedScene of_objects(const std::string& objects, const std::string& rest = "") {
   return elaborated(R"({"version": 1, "objects": [)" + objects + "]" + rest + "}");
 }
 
 // The graph's listing without source locations.
-inline std::string listing(const compiler::Elaborated& e) {
+inline std::string listing(const compiler::ElaboratedScene& e) {
   const std::string text = compiler::print_graph(e.scene, compiler::Source());
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
@@ -48,7 +48,7 @@ inline std::string listing(const compiler::Elaborated& e) {
   return out;
 }
 
-inline std::string surfaces(const compiler::Elaborated& e) {
+inline std::string surfaces(const compiler::ElaboratedScene& e) {
   std::string out;
   for (const compiler::Surface& s : e.surfaces) out += fmt::format("{}:{} ", s.name, e.materials[s.material].name);
   return out;

@@ -24,12 +24,12 @@ namespace {
 using namespace fathom::compiler;
 using fathom::test::of_objects;
 
-Elaborated scene_of(const std::string& material, const std::string& params = "{}") {
+ElaboratedScene scene_of(const std::string& material, const std::string& params = "{}") {
   return of_objects(R"({"type": "sphere", "radius": 1, "material": "m"})",
                     R"(, "params": )" + params + R"(, "materials": {"m": )" + material + "}");
 }
 Material material_of(const std::string& material) {
-  const Elaborated scene = scene_of(material);
+  const ElaboratedScene scene = scene_of(material);
   CHECK(scene.textures.empty());
   return scene.materials[0];
 }
@@ -74,7 +74,7 @@ struct DocumentedProperty {
 
 // Returns the rows of the table of principled materials in docs/reference/materials.md.
 std::map<std::string, DocumentedProperty> documented_properties() {
-  std::istringstream page(tests::read_file(FATHOM_SOURCE_DIR "/docs/reference/materials.md"));
+  std::istringstream page(test::read_file(FATHOM_SOURCE_DIR "/docs/reference/materials.md"));
   std::string line;
   while (std::getline(page, line) && line != "| property | short | default | meaning |") continue;
   std::getline(page, line);
@@ -215,13 +215,13 @@ TEST_CASE("materials: what does not vary is a number", "[materials]") {
       material_of(R"({"type": "diffuse", "color": {"pattern": "checker", "a": 0.5, "b": [0.5, 0.5, 0.5]}})").color ==
       glm::dvec3(0.5));
   CHECK(material_of(R"({"type": "principled", "roughness": "1/4"})").roughness == 0.25);
-  const Elaborated scene = scene_of(R"({"type": "diffuse", "color": ["r", 0.5, "2*r"]})", R"({"r": 0.25})");
+  const ElaboratedScene scene = scene_of(R"({"type": "diffuse", "color": ["r", 0.5, "2*r"]})", R"({"r": 0.25})");
   CHECK(scene.textures.empty());
   CHECK(scene.materials[0].color == glm::dvec3(0.25, 0.5, 0.5));
 }
 
 TEST_CASE("materials: patterns become textures, ends first", "[materials]") {
-  const Elaborated scene = scene_of(R"({"type": "principled", "roughness":
+  const ElaboratedScene scene = scene_of(R"({"type": "principled", "roughness":
       {"pattern": "stripes", "axis": [0, 0, 3], "width": 0.25, "scale": 2, "a": 0.2,
        "b": {"pattern": "noise", "seed": 7, "a": 0.4, "b": "x*x"}},
     "ior": {"pattern": "checker", "a": 1.25, "b": 1.75}})");

@@ -14,11 +14,11 @@ namespace {
 
 using namespace fathom;
 using namespace fathom::compiler;
-using fathom::tests::compiled;
-using fathom::tests::plain_list;
+using fathom::test::compiled;
+using fathom::test::plain_list;
 
 std::string model(const std::string& name) {
-  return tests::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data" / name);
+  return test::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data" / name);
 }
 
 std::vector<glm::dvec3> random_points(std::size_t count, double depth) {

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "tests/support/compiled.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
 #include "vm/interpret/evaluate.h"
 
@@ -21,12 +21,12 @@ namespace {
 
 using namespace fathom;
 using namespace fathom::compiler;
-using fathom::tests::compiled;
+using fathom::test::compiled;
 using glm::dvec3;
 using nlohmann::json;
 
 std::string molecule() {
-  return tests::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data/molecule.json");
+  return test::read_file(std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/data/molecule.json");
 }
 
 // Reference evaluator, modelled on the program that defines the format: a point passes through the matrices from the
@@ -149,7 +149,7 @@ TEST_CASE("colours are materials", "[import]") {
 
 TEST_CASE("the molecule is what its file says", "[import]") {
   // Chains of 1000 blends: the reference sums them in another form.
-  CHECK(farthest(molecule(), test::few(200)) < 1e-6);
+  CHECK(farthest(molecule(), test::scaled_cases(200)) < 1e-6);
   const CompiledScene scene = compiled(molecule());
   CHECK(scene.surfaces.size() == 1);
   CHECK(scene.lipschitz < 1.001);

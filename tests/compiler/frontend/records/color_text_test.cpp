@@ -10,7 +10,7 @@ namespace fathom::test::color_text_test {
 namespace {
 
 glm::dvec3 color_of(const std::string& color) {
-  const compiler::CompiledScene scene = tests::compiled(
+  const compiler::CompiledScene scene = test::compiled(
       R"({"version": 1, "background": )" + color + R"(, "materials": {"m": {"type": "diffuse", "color": )" + color +
       R"(}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
   CHECK(scene.background.top == scene.materials.at(0).color);

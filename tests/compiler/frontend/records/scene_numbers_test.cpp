@@ -63,7 +63,7 @@ std::string every_number(bool formulas) {
 }
 
 TEST_CASE("formulas stand wherever numbers do", "[elaborate]") {
-  const Elaborated a = elaborated(every_number(false)), b = elaborated(every_number(true));
+  const ElaboratedScene a = elaborated(every_number(false)), b = elaborated(every_number(true));
   CHECK(listing(a) == listing(b));
   CHECK(listing(b).find("sphere radius=2") != std::string::npos);
   CHECK((a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up));
@@ -88,7 +88,7 @@ TEST_CASE("parameters have values, bounds and defaults", "[elaborate]") {
       "r": {"default": 0.5, "min": 0, "max": "2*2", "doc": "of the ball"},
       "d": "2*r", "h": {"default": "d + 1", "min": "d"}, "k": -3},
       "objects": [{"type": "cylinder", "radius": "r", "half_height": "h - k"}]})";
-  const Elaborated e = elaborated(text);
+  const ElaboratedScene e = elaborated(text);
   REQUIRE(e.parameters.size() == 4);
   CHECK((e.parameters[0].name == "r" && e.parameters[0].value == 0.5 && e.parameters[0].min == 0));
   CHECK((e.parameters[0].max == 4 && e.parameters[0].doc == "of the ball"));
@@ -96,7 +96,7 @@ TEST_CASE("parameters have values, bounds and defaults", "[elaborate]") {
   CHECK((e.parameters[2].value == 2 && e.parameters[2].min == 1 && e.parameters[3].value == -3));
   CHECK(listing(e).starts_with("%0 = cylinder radius=0.5 half_height=5\n"));
 
-  const Elaborated given = elaborated(text, {{"r", 1}, {"k", 0}, {"r", 4}});
+  const ElaboratedScene given = elaborated(text, {{"r", 1}, {"k", 0}, {"r", 4}});
   CHECK((given.parameters[0].value == 4 && given.parameters[1].value == 8 && given.parameters[2].value == 9));
   CHECK(listing(given).starts_with("%0 = cylinder radius=4 half_height=9\n"));
 }
@@ -130,7 +130,7 @@ TEST_CASE("formulas in lists of points, and what is no list of numbers", "[elabo
 }
 
 TEST_CASE("no formula where no number is wanted", "[elaborate]") {
-  const Elaborated e = of_objects(R"({"name": "1 +", "type": "sphere", "radius": 1, "material": "2*r"})",
+  const ElaboratedScene e = of_objects(R"({"name": "1 +", "type": "sphere", "radius": 1, "material": "2*r"})",
                                   R"(, "materials": {"2*r": {"type": "diffuse"}}, "$schema": "1 +")");
   CHECK(surfaces(e) == "1 +:2*r ");
 }

@@ -24,9 +24,9 @@ namespace fathom::schema_test {
 namespace {
 
 using namespace fathom::compiler;
-using fathom::tests::golden_files;
-using fathom::tests::read_file;
-using fathom::tests::schema_problem;
+using fathom::test::golden_files;
+using fathom::test::read_file;
+using fathom::test::schema_problem;
 using nlohmann::json;
 namespace fs = std::filesystem;
 

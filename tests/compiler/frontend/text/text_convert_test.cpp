@@ -11,7 +11,7 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/print.h"
 #include "compiler/frontend/text/read_text.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
 #include "tests/support/import_folder.h"
 #include "tests/support/random/random_document.h"
@@ -37,7 +37,7 @@ std::string there_and_back(const syntax::File& file, const std::string& json) {
 
 TEST_CASE("text: documents come back from text as they were", "[text]") {
   const char* count = std::getenv("FATHOM_DOCUMENTS");  // 10,000 take 20 seconds
-  const int documents = count ? std::atoi(count) : test::few(1000);
+  const int documents = count ? std::atoi(count) : test::scaled_cases(1000);
   for (int i = 0; i < documents; ++i) {
     test::Random random(static_cast<std::uint64_t>(i));
     const syntax::File file = test::random_document(random);
@@ -82,7 +82,7 @@ TEST_CASE("text: the project's scenes come back as they were, and are one scene 
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
-    Source json(entry.path().string(), tests::read_file(entry.path()));
+    Source json(entry.path().string(), test::read_file(entry.path()));
     CAPTURE(entry.path().string());
     Diagnostics diagnostics;
     const auto read = read_scene(json, diagnostics);
@@ -99,10 +99,10 @@ TEST_CASE("text: the project's texts are one scene as JSON", "[text][released]")
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".fathom") continue;
-    Source text(entry.path().string(), tests::read_file(entry.path()));
+    Source text(entry.path().string(), test::read_file(entry.path()));
     CAPTURE(entry.path().string());
     Diagnostics diagnostics;
-    const auto kept = read_kept(text, diagnostics, {}, tests::imports_from(entry.path().parent_path()));
+    const auto kept = read_with_formulas(text, diagnostics, {}, test::imports_from(entry.path().parent_path()));
     REQUIRE(kept);
     CHECK(digest_of(Source("a.json", write_json(kept->file))) == digest_of(text));
     CHECK(text::format_text(text) == text.text());

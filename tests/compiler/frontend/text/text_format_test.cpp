@@ -7,7 +7,7 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/parse/lexer.h"
 #include "compiler/frontend/text/print.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_document.h"
 
 namespace fathom::text_format_test {
@@ -59,7 +59,7 @@ std::string scrambled(const std::string& text, test::Random& random) {
 }
 
 TEST_CASE("text: the layout changes no token and no comment, and nothing the second time", "[text]") {
-  for (int i = 0; i < test::few(1000); ++i) {
+  for (int i = 0; i < test::scaled_cases(1000); ++i) {
     test::Random random(static_cast<std::uint64_t>(i));
     const syntax::File file = test::random_document(random);
     const std::string text = scrambled(text::print_text(file, Source("a.json", write_json(file))), random);

@@ -5,7 +5,6 @@
 
 #include "compiler/artefact/compiled_file.h"
 #include "compiler/artefact/listing.h"
-#include "compiler/artefact/load.h"
 #include "compiler/compile.h"
 #include "compiler/frontend/formats/write_json.h"
 

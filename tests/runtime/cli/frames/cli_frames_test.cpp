@@ -3,13 +3,13 @@
 #include <string>
 
 #include "runtime/film/film_file.h"
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_frames_test {
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 // A ball that moves to the right, under a static camera.
@@ -199,7 +199,7 @@ TEST_CASE("cli frames: programs without their text have no time") {
   REQUIRE(folder.run("compile hop.json -o bare.fbc --no-text -q").code == 0);
   const Result bare = folder.run("render bare.fbc --frames 1:3 -o bare.png");
   CHECK(bare.code == 2);
-  CHECK_THAT(bare.err, Contains("programs without their scene"));
+  CHECK_THAT(bare.err, Contains("programs without the scene they were compiled from"));
   REQUIRE(folder.run_script("\"$fathom\" render - --frames 1:3 -o in.png -q < hop.json").code == 0);
   CHECK(folder.read("in-0002.png") == folder.read("json-0002.png"));
 }
@@ -296,7 +296,7 @@ TEST_CASE("cli frames: runs of other frames may share a journal") {
 // A render whose frames take long enough to be interrupted by a signal.
 std::string slow(int samples = 2000) {
   std::string text = kHop;
-  const std::string spp = std::to_string(fathom::test::few(samples));
+  const std::string spp = std::to_string(fathom::test::scaled_cases(samples));
   text.replace(text.find("spp = 2"), 7, "spp = " + spp);
   return text;
 }
@@ -384,8 +384,8 @@ object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), f
   INFO(turntable.err);
   REQUIRE(turntable.code == 0);
   CHECK_THAT(turntable.err, Contains("regions built 1 time and kept 3 times"));
-  CHECK_THAT(folder.read("stats-0000.json"), Contains("\"regions_kept\": 0,"));
-  CHECK_THAT(folder.read("stats-0003.json"), Contains("\"regions_kept\": 1,") && Contains("\"region_seconds\": 0,"));
+  CHECK_THAT(folder.read("stats-0000.json"), Contains("\"regions_reused\": 0,"));
+  CHECK_THAT(folder.read("stats-0003.json"), Contains("\"regions_reused\": 1,") && Contains("\"region_seconds\": 0,"));
   REQUIRE(folder.run("render many.fathom --frames 3 -o alone.png -q").code == 0);
   CHECK(folder.read("alone-0003.png") == folder.read("a-0003.png"));
 }

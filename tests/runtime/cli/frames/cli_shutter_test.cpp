@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_shutter_test {
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 const char* const kFast = R"({
@@ -73,7 +73,7 @@ TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace") {
 
 TEST_CASE("cli shutter: kill -9 and resume give the bits of a render that was not disturbed") {
   const Moving folder;
-  const std::string render = "fast.json --denoise --shutter-times 8 -q -s " + std::to_string(fathom::test::few(1600));
+  const std::string render = "fast.json --denoise --shutter-times 8 -q -s " + std::to_string(fathom::test::scaled_cases(1600));
   REQUIRE(folder.run("render " + render + " -o whole.exr").code == 0);
   const Result result =
       folder.run_script("for s in 0.05 0.1 0.15 0.2; do\n  timeout -s KILL $s \"$fathom\" render " + render +
@@ -120,7 +120,7 @@ background [1, 1, 1]
 object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), floor(i/49)])]
 )");
   REQUIRE(folder.run("render many.fathom -o a.png -q --stats-json stats.json").code == 0);
-  CHECK_THAT(folder.read("stats.json"), Contains("\"regions_kept\": 7,"));
+  CHECK_THAT(folder.read("stats.json"), Contains("\"regions_reused\": 7,"));
   REQUIRE(folder.run("render many.fathom -o b.png -q --no-regions").code == 0);
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }

@@ -8,8 +8,8 @@ namespace fathom::cli_define_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 const char* const kDial = R"({
   "version": 1,

@@ -12,7 +12,7 @@ namespace fathom::cli_files_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 const std::string kOld = "what was there before";

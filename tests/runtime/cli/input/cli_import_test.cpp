@@ -9,8 +9,8 @@ namespace fathom::cli_import_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 const char* const kCircle =
     "# a circle\nx var-x\ny var-y\na square x\nb square y\nc add a b\nd sqrt c\nr const 0.5\ne sub d r\n";

@@ -9,8 +9,8 @@ namespace fathom::cli_imports_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 const char* const kLibrary = "fathom 1\nparam r(max = 2) = 1\ndef ball(n) = sphere(n*r)\nobject ball(1)\n";
 const char* const kScene = "fathom 1\nimport \"lib/balls.fathom\"(r = 0.5) as balls\nobject \"a\" balls.ball(2)\n";

@@ -11,7 +11,7 @@ namespace fathom::cli_limits_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

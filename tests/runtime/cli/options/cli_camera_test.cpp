@@ -11,8 +11,8 @@ namespace fathom::cli_camera_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 std::string scene_of(const std::string& objects, const std::string& rest = "") {
   return R"({"version": 1, "film": {"width": 40, "height": 24}, "render": {"spp": 4}, "background": [1, 1, 1],

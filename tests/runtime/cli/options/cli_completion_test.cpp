@@ -8,8 +8,8 @@ namespace fathom::cli_completion_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 bool has_program(const Folder& folder, const std::string& name) {
   return folder.run_script("command -v " + name + " >found").code == 0;

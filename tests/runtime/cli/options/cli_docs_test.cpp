@@ -13,7 +13,7 @@ namespace fathom::cli_docs_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 
 struct Block {
   std::string language, text;

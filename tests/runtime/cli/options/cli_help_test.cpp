@@ -9,8 +9,8 @@ namespace fathom::cli_help_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 // Returns the second word of the lines "  fathom VERB ..." of the overview.
 std::set<std::string> verbs() {

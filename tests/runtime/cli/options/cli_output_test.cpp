@@ -8,10 +8,10 @@ namespace fathom::cli_output_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::kBall;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::kBall;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 }  // namespace
 

@@ -2,18 +2,18 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/effort.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_checkpoint_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 
 // Long enough to be interrupted: 0.6 s on one core in a release build, 1 s under the sanitizers.
-const std::string kSpp = std::to_string(fathom::test::few(400) < 400 ? 96 : 400);
+const std::string kSpp = std::to_string(fathom::test::scaled_cases(400) < 400 ? 96 : 400);
 const std::string kSlow = R"({
   "version": 1,
   "params": {"r": 0.5},

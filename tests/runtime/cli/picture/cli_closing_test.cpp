@@ -10,8 +10,8 @@ namespace {
 
 using Catch::Contains;
 using Catch::Matches;
-using fathom::tests::Folder;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::Result;
 
 std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 

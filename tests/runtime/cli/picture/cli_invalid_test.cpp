@@ -10,7 +10,7 @@ namespace fathom::cli_invalid_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
+using fathom::test::Folder;
 
 constexpr const char* kRoot = R"J({"version": 1, "background": [1, 1, 1], "objects": [
   {"type": "expression", "half_size": [2, 2, 2], "formula": "length(x, y, z) - 1 + 0*sqrt(0.5 - x)"}]})J";

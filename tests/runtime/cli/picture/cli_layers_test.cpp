@@ -12,13 +12,13 @@ namespace {
 
 using Catch::Contains;
 using fathom::runtime::FloatImage;
-using fathom::tests::Folder;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 FloatImage read(const Folder& folder, const std::string& name) {
   const auto image = fathom::runtime::read_image(folder.path() / name);
-  if (const auto* unread = std::get_if<fathom::runtime::UnreadImage>(&image)) FAIL(unread->problem);
+  if (const auto* unread = std::get_if<fathom::runtime::ImageReadError>(&image)) FAIL(unread->problem);
   return std::get<FloatImage>(image);
 }
 

@@ -10,7 +10,7 @@ namespace fathom::cli_picture_warning_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
+using fathom::test::Folder;
 
 // A ball at the origin with the given camera, and `more` properties of the scene.
 std::string ball(const std::string& camera, const std::string& more) {

@@ -10,9 +10,9 @@ namespace fathom::cli_profile_test {
 namespace {
 
 using Catch::Contains;
-using fathom::tests::Folder;
-using fathom::tests::png_size;
-using fathom::tests::Result;
+using fathom::test::Folder;
+using fathom::test::png_size;
+using fathom::test::Result;
 
 // Returns the values of a grey portable float map.
 std::vector<float> values_of(const std::string& map, const std::string& header) {

@@ -11,7 +11,7 @@ namespace fathom::cli_plan_test {
 
 namespace {
 
-using namespace fathom::tests;
+using namespace fathom::test;
 using Catch::Contains;
 namespace fs = std::filesystem;
 

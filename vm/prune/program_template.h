@@ -1,0 +1,138 @@
+// ProgramTemplates: programs without their constants.
+//
+// The interpreter runs one instruction for many points. If every cell of a scene has its own program
+// (runtime/field/regions.h), few points share a program. But programs pruned from one scene differ in little else
+// than their constants, and without these many programs are the same. So each lane takes a point and the constants of
+// the point's own program, and the lanes are full again.
+//
+//     const Constants constants(whole);                       // of all programs that are pruned from `whole`
+//     std::uint32_t at = templates.pack(part, constants, pool);
+//     evaluate_template(templates[pool[at]], constants, pool.data(), jobs, distance, workspace);
+//     templates.unpack(whole, constants, pool.data(), at, part);  // restores the part
+//
+// A template has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
+// become one instruction that evaluates a different shape in every lane. A part's frame holds the rest of the part.
+//
+// Tested by: tests/vm/prune/program_template_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "vm/interpret/workspace.h"
+#include "vm/prune/specialise.h"
+
+namespace fathom::vm {
+
+// Hash of words, to find equal words.
+inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
+  std::uint64_t hash = words.size();
+  for (const std::uint32_t word : words) {
+    hash = (hash ^ word) * 0x9e3779b97f4a7c15ull;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an integer number of quads
+
+// True if a shape can be laid out as a polymorphic shape (kPolymorphic): its translation, up to kPolymorphicImmediates immediates,
+// its opcode. A shape that costs nothing is a number of a formula.
+inline constexpr std::size_t kPolymorphicImmediates = 4;
+constexpr bool can_be_polymorphic(std::string_view immediates, int cost) {
+  constexpr int kMaxCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
+  const auto count = static_cast<std::size_t>(count_names(immediates));
+  return count > 0 && count <= kPolymorphicImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
+         cost <= kMaxCost;
+}
+
+// Constants of a whole program by instruction, in the layout that lanes load. In a program with both spheres and
+// boxes, these are laid out as round boxes, which have the same distances bit for bit (except for the sign of a
+// zero).
+class Constants {
+ public:
+  explicit Constants(const Code& whole);
+
+  // Converts the offset of an opcode word to the row of its constants, in quads, and back.
+  std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }
+  std::uint32_t source(std::uint32_t row) const { return source_of_[row]; }
+  const float* values() const { return values_.data(); }
+  std::size_t bytes() const;
+  void forget_rows() { row_at_ = {}; }  // frees memory; call after the last pack()
+
+ private:
+  Opcode laid_out(Opcode opcode) const;
+  void append_polymorphic(std::uint32_t word, const std::uint32_t* immediates);
+
+  bool round_boxes_ = false;
+  std::vector<float> values_;
+  std::vector<std::uint32_t> row_at_;     // [word]
+  std::vector<std::uint32_t> source_of_;  // [quad]
+};
+
+struct ProgramTemplate {
+  std::vector<std::uint32_t> words;  // float immediates are 0
+  std::vector<double> doubles;          // [word] constants of outlines, which belong to the template; else empty
+  std::uint32_t locals, max_values, max_points, choices, instructions;
+  std::vector<std::uint8_t> quads;  // number of quads of each instruction that has constants
+
+  operator Code() const { return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices}; }
+};
+
+// ProgramTemplates and frames of many parts. A part in a pool consists of its template's number, its frame's number, the
+// rows of constants of the template's instructions that have constants, and the offsets in the whole program of the
+// part's other instructions.
+class ProgramTemplates {
+ public:
+  // Appends the part to the pool. Returns the index of its first entry.
+  std::uint32_t pack(const PrunedProgram& part, const Constants& constants, std::vector<std::uint32_t>& pool);
+  void unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool, std::uint32_t at,
+              PrunedProgram& out) const;
+  // Renumbers a part that `others` packed, so that it refers to the templates and frames of this object.
+  void renumber(const ProgramTemplates& others, std::uint32_t* pool, std::uint32_t at);
+
+  // Prefetches the constants of the part that evaluate_template() will read.
+  void prefetch(const Constants& constants, const std::uint32_t* pool, std::uint32_t at) const {
+    const std::size_t rows = templates_[pool[at]].quads.size();
+    for (std::size_t i = 0; i < rows; ++i) __builtin_prefetch(constants.values() + kQuad * pool[at + 2 + i]);
+  }
+
+  const ProgramTemplate& operator[](std::uint32_t number) const { return templates_[number]; }
+  std::size_t size() const { return templates_.size(); }
+  std::size_t bytes() const { return bytes_; }
+
+ private:
+  struct Remainder {
+    std::vector<std::uint32_t> words;  // the part's, except that float immediates and tags' surfaces are 0
+    std::vector<double> doubles;          // [word] constants of outlines; empty without outlines
+    std::vector<std::uint32_t> place;  // [instruction] index of its entry in the pool, after the two numbers
+    std::uint32_t program_template, locals, max_values, max_points, choices;
+    std::uint64_t cost;
+  };
+  using Index = std::unordered_multimap<std::uint64_t, std::uint32_t>;  // by hash of the words
+  std::uint32_t remainder_of(const PrunedProgram& part);
+  std::uint32_t add(Remainder&& frame);
+  std::uint32_t number_of(ProgramTemplate&& program_template);
+
+  std::vector<ProgramTemplate> templates_;
+  std::vector<Remainder> remainders_;
+  Index template_at_, remainder_at_;
+  std::size_t bytes_ = 0;
+  Remainder wanted_;
+};
+
+// A point to evaluate, and its program.
+struct alignas(32) TemplateJob {
+  float x, y, z, most;
+  std::uint32_t at, point;  // index of the program in the pool; index of the result in `distance`
+};
+// Computes distance[job.point] = min(distance of the job's program at x, y, z, job.most). All programs have the
+// template `template`.
+void evaluate_template(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
+                       std::span<const TemplateJob> jobs, float* distance, Workspace& workspace);
+
+}  // namespace fathom::vm
