@@ -1,5 +1,5 @@
 // Measures the time of a slice of a text model with thousands of lines: 1024x1024 pixels over [-1, 1]^2 on one
-// processor. The rows are compiling the model, the signs at the pixels' centres (runtime/slice/quadtree.h), the
+// processor. The rows are compiling the model, the signs at the pixels' centres (runtime/slice/quadtree.cpp), the
 // values there, and compiling and signs together.
 //
 //     build/release/bench_slices

@@ -1,10 +1,15 @@
-#include "runtime/slice/quadtree.h"
+// Evaluates a slice by a quadtree. If only signs are needed, tiles that are solid or empty throughout are filled at
+// once. In other tiles each level prunes the program (vm/prune/specialise.h), and then the pixels are evaluated.
+//
+// Source: Duff, "Interval arithmetic and recursive subdivision for implicit functions and constructive solid
+// geometry", 1992; Keeter, "Massively Parallel Rendering of Complex Closed-Form Implicit Surfaces", 2020.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "runtime/slice/slice.h"
 #include "vm/program/parallel_for.h"
 #include "vm/prune/specialise.h"
 
@@ -15,7 +20,7 @@ namespace {
 constexpr int kEdges[] = {256, 64, 16};
 constexpr int kLevels = 3, kTilesAcross = 4;
 static_assert(kTilesAcross * kTilesAcross == vm::kEnclosedBoxes);
-// With fewer choices, evaluating row by row is as fast.
+// Values of a program with fewer choices take no longer without pruning. Signs always gain from filled tiles.
 constexpr std::size_t kMinChoices = 24;
 
 struct Tile {
@@ -24,8 +29,8 @@ struct Tile {
 
 class QuadtreeWorker {
  public:
-  QuadtreeWorker(const Slice& slice, SliceValues wanted, std::vector<float>& field)
-      : slice_(slice), sign_(wanted == SliceValues::Sign), field_(field) {
+  QuadtreeWorker(const Slice& slice, SliceValues wanted, bool prunes, std::vector<float>& field)
+      : slice_(slice), sign_(wanted == SliceValues::Sign), prunes_(prunes), field_(field) {
     for (int axis = 0; axis < 3; ++axis) {
       auto &columns = columns_[static_cast<std::size_t>(axis)], &rows = rows_[static_cast<std::size_t>(axis)];
       for (int x = 0; x < slice.width; ++x) columns.push_back(static_cast<float>(slice.point(x, 0)[axis]));
@@ -37,19 +42,21 @@ class QuadtreeWorker {
   // Evaluates the sixteen tiles of a level that start at `first`, as far as the image goes, or only tile `only`.
   void run(const vm::PrunedProgram& part, Tile first, int level, std::size_t only = vm::kEnclosedBoxes) {
     const int edge = kEdges[level];
-    set_boxes(first, edge);
     vm::Specialiser& specialiser = specialisers_[static_cast<std::size_t>(level)];
-    specialiser.enclose_choices(part, boxes(), workspace_);
-    const float infinity = std::numeric_limits<float>::infinity();
-    specialiser.resolve(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+    if (prunes_) {
+      set_boxes(first, edge);
+      specialiser.enclose_choices(part, boxes(), workspace_);
+      const float infinity = std::numeric_limits<float>::infinity();
+      specialiser.resolve(sign_ ? 0 : -infinity, sign_ ? 0 : infinity);
+    }
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
       const Tile tile = tile_of(first, edge, i);
       if (tile.x >= slice_.width || tile.y >= slice_.height || (only < vm::kEnclosedBoxes && i != only)) continue;
-      if (sign_ && (specialiser.lo(i) > 0 || specialiser.hi(i) < 0)) {
+      if (prunes_ && sign_ && (specialiser.lo(i) > 0 || specialiser.hi(i) < 0)) {
         fill(tile, edge, specialiser.lo(i) > 0 ? 1.0f : -1.0f);
         continue;
       }
-      const vm::PrunedProgram& child = cut(part, specialiser, i, level);
+      const vm::PrunedProgram& child = prunes_ ? cut(part, specialiser, i, level) : part;
       if (level + 1 < kLevels) {
         run(child, tile, level + 1);
       } else {
@@ -60,7 +67,8 @@ class QuadtreeWorker {
 
  private:
   // Returns the part of `part` that matters in box i, or `part` itself if a smaller part costs more than it saves.
-  const vm::PrunedProgram& cut(const vm::PrunedProgram& part, vm::Specialiser& specialiser, std::size_t i, int level) {
+  const vm::PrunedProgram& cut(const vm::PrunedProgram& part, vm::Specialiser& specialiser, std::size_t i,
+                               int level) {
     constexpr std::uint32_t kCheap = 16;  // choices
     if (5 * (specialiser.choices_left(i) + kCheap) > 4 * part.choices) return part;
     vm::PrunedProgram& child = parts_[static_cast<std::size_t>(level)];
@@ -119,7 +127,7 @@ class QuadtreeWorker {
   }
 
   const Slice& slice_;
-  const bool sign_;
+  const bool sign_, prunes_;
   std::vector<float>& field_;
   // [axis] coordinates of the first row's pixels, of the first column's pixels, and true if the coordinate changes
   // along a row.
@@ -133,25 +141,27 @@ class QuadtreeWorker {
 
 }  // namespace
 
-bool evaluate_by_quadtree(const vm::Code& distance, const Slice& slice, SliceValues wanted, int threads,
-                          std::vector<float>& field) {
-  vm::DefUseGraph expression;
-  if (!expression.read(distance) || expression.choices().size() < kMinChoices) return false;
+std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
+                                  SliceValues wanted) {
+  std::vector<float> field(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
+  vm::DefUseGraph graph;
+  const bool prunes = graph.read(distance) && (wanted == SliceValues::Sign || graph.choices().size() >= kMinChoices);
   const vm::PrunedProgram part = vm::whole(distance);
-  const int step = kEdges[0] * kTilesAcross;
+  const int level = prunes ? 0 : kLevels - 1, step = kEdges[level] * kTilesAcross;
   const int columns = (slice.width + step - 1) / step, rows = (slice.height + step - 1) / step;
   // Several threads take the largest tiles one by one, although enclosing sixteen tiles costs as much as enclosing
   // one. A single thread takes all sixteen at once.
-  const bool one_by_one = threads > 1;
+  const bool one_by_one = prunes && threads > 1;
   const std::size_t turns = one_by_one ? vm::kEnclosedBoxes : 1;
   parallel_for(
-      threads, static_cast<std::size_t>(columns * rows) * turns, [&] { return QuadtreeWorker(slice, wanted, field); },
+      threads, static_cast<std::size_t>(columns * rows) * turns,
+      [&] { return QuadtreeWorker(slice, wanted, prunes, field); },
       [&](QuadtreeWorker& worker, std::size_t i) {
         const int block = static_cast<int>(i / turns);
-        worker.run(part, {block % columns * step, block / columns * step}, 0,
+        worker.run(part, {block % columns * step, block / columns * step}, level,
                    one_by_one ? i % turns : vm::kEnclosedBoxes);
       });
-  return true;
+  return field;
 }
 
 }  // namespace fathom::runtime

@@ -1,41 +1,10 @@
 #include "runtime/slice/slice.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-
-#include "runtime/slice/quadtree.h"
-#include "vm/interpret/evaluate.h"
-#include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
 namespace {
-
-// Evaluates rows of pixels. Each thread has its own.
-class RowEvaluator {
- public:
-  RowEvaluator(const vm::VerifiedProgram& distance, const Slice& slice) : distance_(distance), slice_(slice) {
-    for (auto& coordinates : points_) coordinates.resize(static_cast<std::size_t>(slice.width));
-  }
-
-  // `values`: one per pixel of the row.
-  void run(int row, float* values) {
-    for (int column = 0; column < slice_.width; ++column) {
-      const glm::dvec3 point = slice_.point(column, row);
-      for (std::size_t i = 0; i < 3; ++i) {
-        points_[i][static_cast<std::size_t>(column)] = static_cast<float>(point[static_cast<int>(i)]);
-      }
-    }
-    vm::evaluate_distance(distance_, {points_[0].data(), points_[1].data(), points_[2].data()},
-                          static_cast<std::size_t>(slice_.width), values, workspace_);
-  }
-
- private:
-  const vm::VerifiedProgram& distance_;
-  const Slice& slice_;
-  std::array<std::vector<float>, 3> points_;
-  vm::Workspace workspace_;
-};
 
 // Colours of one side of the surface, sRGB encoded. Blue and orange differ to the colour-blind as much as to anyone.
 // Each side becomes fainter with the distance, so that the surface stands out.
@@ -103,17 +72,6 @@ class DistanceShader {
 };
 
 }  // namespace
-
-std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
-                                  SliceValues wanted) {
-  const auto width = static_cast<std::size_t>(slice.width), height = static_cast<std::size_t>(slice.height);
-  std::vector<float> field(width * height);
-  if (evaluate_by_quadtree(distance, slice, wanted, threads, field)) return field;
-  parallel_for(
-      threads, height, [&] { return RowEvaluator(distance, slice); },
-      [&](RowEvaluator& rows, std::size_t row) { rows.run(static_cast<int>(row), field.data() + row * width); });
-  return field;
-}
 
 ByteImage sign_image(const std::vector<float>& field, int width, int height) {
   ByteImage image{width, height, {}};

@@ -10,8 +10,8 @@
 
 namespace fathom::runtime {
 
-// Returns f at the pixels' centres in float32, [y][x], the same for any number of threads. Programs that can be
-// pruned are evaluated by a quadtree (runtime/slice/quadtree.h), other programs row by row.
+// Returns f at the pixels' centres in float32, [y][x], the same for any number of threads. The code is in
+// runtime/slice/quadtree.cpp.
 std::vector<float> evaluate_slice(const vm::VerifiedProgram& distance, const Slice& slice, int threads,
                                   SliceValues wanted = SliceValues::Exact);
 

@@ -1,5 +1,8 @@
 #include "runtime/slice/slice.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -75,6 +78,22 @@ TEST_CASE("slice: values are those of the machine, for any number of threads", "
         const float actual = field[static_cast<std::size_t>(row * 37 + column)];
         CHECK(static_cast<double>(actual) == Approx(expected).margin(1e-5));
       }
+    }
+  }
+}
+
+TEST_CASE("slice: signs are those of the values, with few choices and with many", "[slice]") {
+  std::string row;
+  for (int i = 0; i < 40; ++i)
+    row += fmt::format(R"(, {{"type": "sphere", "radius": 1, "translate": [{}, {}, 0]}})", 3 * i, i % 7);
+  for (const std::string& more : {std::string(), row}) {
+    const auto scene = scene_of(R"("objects": [{"type": "box", "half_size": [1, 2, 3]})" + more + "]");
+    const Slice slice = frame_slice(scene.bound, Axis::Z, 0.125, 300, 90);
+    const std::vector<float> values = evaluate_slice(scene.distance, slice, 1);
+    for (const int threads : {1, 3}) {
+      const std::vector<float> signs = evaluate_slice(scene.distance, slice, threads, SliceValues::Sign);
+      CHECK(std::equal(values.begin(), values.end(), signs.begin(),
+                       [](float a, float b) { return (a < 0) == (b < 0); }));
     }
   }
 }

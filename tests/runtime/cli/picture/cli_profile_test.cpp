@@ -37,7 +37,7 @@ TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves 
   const auto a = nlohmann::json::parse(folder.read("a.json")), b = nlohmann::json::parse(folder.read("b.json"));
   CHECK(a.count("stage_seconds") == 0);
   double sum = 0;
-  for (const char* stage : {"march", "resolve", "normals", "shading", "film"}) {
+  for (const char* stage : {"march", "certify", "normals", "shading", "film"}) {
     sum += b["stage_seconds"][stage].get<double>();
   }
   CHECK(sum > 0);
