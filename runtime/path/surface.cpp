@@ -11,19 +11,20 @@
 namespace fathom::runtime {
 namespace {
 
-// The least cosine between a normal and wo, so that a grazing hit's normal still faces the ray.
+// Minimum cosine between a normal and wo, so that the normal at a grazing hit still faces the ray.
 constexpr float kMinCosine = 1e-4f;
-// A new ray starts this many d_f from the surface: beyond what float can mistake for the other side. Where large
-// numbers cancel d_f's bound is loose, and twice it is enough.
+// Distance from the surface at which a new ray starts, in d_f: float cannot mistake the sides there. The part of d_f
+// that comes from cancellation is a loose bound, of which twice is enough.
 constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
-// ... but no more than this many bands, 0.3 % of what is looked at: closer than d_f, the ray is marched in double.
+// Maximum of that distance, in bands: 0.3 % of the subject's size. Rays that start closer than d_f are marched in
+// double.
 constexpr float kMaxOffset = 32;
 
-// Of what is known to be clear so much is trusted: a ray must not begin where rounding may put the next surface.
+// Share of a clear distance that is used: a ray must not begin where rounding may put the next surface.
 constexpr float kTrusted = 0.98f;
 
-// What the gradient says of the surface that was hit. It is the normal but where rounding or a crease has it look
-// away from the ray; there it is turned just far enough.
+// Normal that faces the ray. `exact`: the normal is the gradient's direction. Otherwise rounding or a crease turned
+// the gradient away from the ray, and the normal is turned back just far enough.
 struct FacingNormal {
   glm::vec3 normal;
   bool exact;
@@ -39,7 +40,7 @@ FacingNormal facing_normal(glm::vec3 gradient, const Hit& hit) {
   return {squared > kMinCosine * kMinCosine ? turned / std::sqrt(squared) : hit.wo, false};
 }
 
-// How far from the hit nothing comes in the way of rays that leave a convex solid.
+// Returns the distance from the hit within which rays that leave a convex solid meet nothing.
 float clear_distance(float convex, float size, float offset, const Field& field) {
   const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.cancellation);
   return std::max(0.0f, kTrusted * (convex - 2 * error) * field.inv_lipschitz - offset);
@@ -70,7 +71,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
     const float most = kMaxOffset * field.band;
     if (least > most) {
-      // Coordinates as coarse as this give a coarse normal, perhaps another surface's.
+      // Coordinates this coarse give a coarse normal, perhaps of another surface.
       const vm::SurfaceValue exact = field.regions
                                          ? field.regions->evaluate_surface(hits[i].position, workspace)
                                          : vm::evaluate_surface(*field.surface, hits[i].position, workspace);
@@ -78,7 +79,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
       surface[i] = exact.surface;
       convex[i] = 0;
     }
-    CHECK(surface[i] < scene.surfaces.size(), "the surface program names a surface that is not there");
+    CHECK(surface[i] < scene.surfaces.size(), "a tag of the surface program has no surface");
     const FacingNormal found = facing_normal(gradient, hits[i]);
     points[i].normal = found.normal;
     points[i].surface = surface[i];
@@ -91,7 +92,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
 }
 
 void find_object_points(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
-                 std::span<SurfacePoint> points, RealScratch& scratch) {
+                        std::span<SurfacePoint> points, RealScratch& scratch) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!scene.surfaces[points[i].surface].placed) continue;
     const vm::SurfacePlace found = find_object_point(scene, field, hits[i].position, scratch);
@@ -102,16 +103,16 @@ void find_object_points(const compiler::CompiledScene& scene, const Field& field
 }
 
 vm::SurfacePlace find_object_point(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
-                            RealScratch& scratch) {
+                                   RealScratch& scratch) {
   vm::SurfacePlace found = field.regions ? field.regions->evaluate_place(position, scratch)
                                          : vm::evaluate_place(*field.surface, position, scratch.workspace);
-  CHECK(found.surface < scene.surfaces.size(), "the surface program names a surface that is not there");
+  CHECK(found.surface < scene.surfaces.size(), "a tag of the surface program has no surface");
   found.place += scene.surfaces[found.surface].shift;
   return found;
 }
 
 vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
-                              RealScratch& scratch) {
+                                     RealScratch& scratch) {
   const bool placed =
       std::any_of(scene.surfaces.begin(), scene.surfaces.end(), std::mem_fn(&compiler::Surface::placed));
   if (!placed) {
