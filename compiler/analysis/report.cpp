@@ -27,7 +27,7 @@ std::string describe(const Place& place) {
 }
 
 FieldGraph::FieldGraph(const Scene& scene)
-    : scene_(level(scene)),
+    : scene_(normalise(scene)),
       known_(analyse(graph())),
       reached_(graph().size(), false),
       cost_(graph().size(), 1),

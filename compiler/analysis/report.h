@@ -33,7 +33,7 @@ struct CostlyNode {
 
 struct ObjectReport {
   std::string name;
-  NodeFacts facts;                  // of the object's own field
+  NodeFacts facts;                      // of the object's own field
   double lipschitz = 1;                 // of the object's own field, before levelling
   std::optional<CostlyNode> costliest;  // none when no node shortens steps
 };
@@ -61,7 +61,7 @@ std::string_view class_of(const NodeFacts& facts);
 // Facts about a graph that the report, the lints and the probe share.
 class FieldGraph {
  public:
-  explicit FieldGraph(const Scene& scene);  // analyses level(scene), compiler/passes/passes.h
+  explicit FieldGraph(const Scene& scene);  // analyses normalise(scene), compiler/passes/passes.h
 
   // True if the root reaches the node by nodes that are distances, not by the parts of formulas.
   bool reached(NodeId id) const { return reached_[id]; }

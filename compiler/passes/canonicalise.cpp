@@ -7,7 +7,7 @@
 
 namespace fathom::compiler {
 
-Scene share(const Scene& scene) {
+Scene canonicalise(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     const Kind kind = scene.graph.kind(id);
     if (spec(kind).commutes) {

@@ -8,7 +8,7 @@
 
 namespace fathom::compiler {
 
-Scene level(const Scene& scene) {
+Scene normalise(const Scene& scene) {
   const std::vector<bool> free = only_sign_counts(scene);
   std::vector<NodeFacts> known;  // of the graph being made
   const auto lipschitz = [&](const Graph& graph, NodeId id) {

@@ -4,13 +4,13 @@ namespace fathom::compiler {
 
 std::span<const Pass> passes() {
   static constexpr Pass kPasses[] = {
-      {"level", level, Pass::Leaves::Sign},
-      {"unpaint", unpaint},
+      {"normalise", normalise, Pass::Leaves::Sign},
+      {"strip", strip},
       {"fold", fold},
       {"arithmetic", arithmetic},
       {"affine", affine},
       {"flatten", flatten},
-      {"share", share},
+      {"canonicalise", canonicalise},
       {"cull", cull, Pass::Leaves::Sign},
   };
   return kPasses;

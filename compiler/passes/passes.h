@@ -1,5 +1,5 @@
 // The passes over the DAG. One pass = one file = one function = one name for `fathom dump --after`.
-// Each pass keeps the field except for rounding in double. Level and cull keep only the field's sign and the fact
+// Each pass keeps the field except for rounding in double. Normalise and cull keep only the field's sign and the fact
 // that the field is a distance. Tested by: tests/compiler/passes/passes_test.cpp
 #pragma once
 
@@ -22,12 +22,12 @@ struct Pass {
 std::span<const Pass> passes();
 
 // Divides the operands of unions, intersections and cuts by their Lipschitz constants if these differ, so that a
-// steep operand slows down only its own rays. Applies only where nothing but the value's sign matters: level leaves
+// steep operand slows down only its own rays. Applies only where nothing but the value's sign matters: normalise leaves
 // the values below an offset or a blend unchanged.
-Scene level(const Scene& scene);
+Scene normalise(const Scene& scene);
 
 // Removes Paint, which the distance does not need.
-Scene unpaint(const Scene& scene);
+Scene strip(const Scene& scene);
 
 // Simplifies nodes whose parameters make them trivial: offsets of 0 or of offsets, blends of width 0, combinators of
 // one node, the identity transform, the offset of a sphere, the complement of a complement, factors of factors.
@@ -49,6 +49,6 @@ Scene cull(const Scene& scene);
 
 // Puts the operands of unions, intersections and cuts in one order and drops repeated ones, so that equal nodes
 // become one node, which is evaluated once. Also orders the operands of sums, products, minima and maxima of numbers.
-Scene share(const Scene& scene);
+Scene canonicalise(const Scene& scene);
 
 }  // namespace fathom::compiler

@@ -3,7 +3,7 @@
 
 namespace fathom::compiler {
 
-Scene unpaint(const Scene& scene) {
+Scene strip(const Scene& scene) {
   return rewrite(scene, [&](Graph& out, NodeId id, const std::vector<NodeId>& children) {
     return scene.graph.kind(id) == Kind::Paint ? children[0] : keep(scene, out, id, children);
   });

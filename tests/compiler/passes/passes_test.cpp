@@ -15,10 +15,10 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::passes_test {
@@ -73,7 +73,7 @@ void check_same(const Judged& before, const Scene& after, const Pass& pass) {
       continue;
     }
     CHECK(std::abs(was.distance - is.distance) <= 1e-12 * std::max(1.0, std::abs(was.distance)));
-    if (pass.run != compiler::unpaint && was.margin > 1e-9) CHECK(was.surface == is.surface);
+    if (pass.run != compiler::strip && was.margin > 1e-9) CHECK(was.surface == is.surface);
   }
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("a pass leaves the field as it was", "[passes]") {
       const std::string becomes = print(after);
       if (becomes == text) continue;
       INFO(pass.name << ", seed " << seed << '\n' << text << "becomes\n" << becomes);
-      if (pass.run != compiler::level) CHECK(nodes(after) <= nodes(before));
+      if (pass.run != compiler::normalise) CHECK(nodes(after) <= nodes(before));
       check_same(was, after, pass);
     }
   }
@@ -114,7 +114,7 @@ TEST_CASE("all passes together leave the field as it was, and so does lowering",
     for (bool keep_paint : {false, true}) {
       Scene after = before;
       for (const Pass& pass : compiler::passes()) {
-        const bool skip = pass.leaves == Pass::Leaves::Sign || (keep_paint && pass.run == compiler::unpaint);
+        const bool skip = pass.leaves == Pass::Leaves::Sign || (keep_paint && pass.run == compiler::strip);
         if (!skip) after = pass.run(after);
       }
       Random random(seed);

@@ -86,9 +86,9 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
   const Result result = folder.run("dump fold.json --diff");
   CHECK(result.code == 0);
   CHECK(result.out ==
-        R"(; pass unpaint: 6 -> 4 nodes, 6 -> 4 ops, cost 24 -> 24
+        R"(; pass strip: 6 -> 4 nodes, 6 -> 4 ops, cost 24 -> 24
 --- graph
-+++ unpaint
++++ strip
 @@ -1,6 +1,4 @@
  %sphere@2:45 = sphere radius=1
  %round@2:5 = round radius=0.25 %sphere@2:45
@@ -98,7 +98,7 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
 -%union = union %paint@2:5 %paint@3:5
 +%union = union %round@2:5 %box@3:5
 ; pass fold: 4 -> 3 nodes, 4 -> 3 ops, cost 24 -> 23
---- unpaint
+--- strip
 +++ fold
 @@ -1,4 +1,3 @@
 -%sphere@2:45 = sphere radius=1
@@ -110,7 +110,7 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
 ; pass fuse: 3 -> 3 nodes, 3 -> 2 ops, cost 23 -> 23
 )");
   CHECK(folder.run("dump fold.json --diff --after graph").out == "; no pass changed anything\n");
-  CHECK_THAT(folder.run("dump fold.json --diff --after unpaint").out, !Contains("pass fold"));
+  CHECK_THAT(folder.run("dump fold.json --diff --after strip").out, !Contains("pass fold"));
 }
 
 TEST_CASE("cli: dump --region prints the part that matters at a point, and the whole program") {

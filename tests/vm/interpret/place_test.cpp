@@ -9,10 +9,10 @@
 #include "compiler/passes/passes.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::place_test {
@@ -26,13 +26,13 @@ Scene painted_scene(int seed) {
   Random random(seed);
   GraphOptions options;
   options.depth = 2 + seed % 4;
-  return compiler::level(random_scene(random, options));
+  return compiler::normalise(random_scene(random, options));
 }
 
 // Compiles the surface program: runs all passes except the one that removes paint.
 vm::VerifiedProgram surface_program(Scene scene) {
   for (const compiler::Pass& pass : compiler::passes()) {
-    if (pass.run != compiler::unpaint) scene = pass.run(scene);
+    if (pass.run != compiler::strip) scene = pass.run(scene);
   }
   return verified(compiler::fuse(*compiler::lower(scene, compiler::Source{}, 100000)));
 }

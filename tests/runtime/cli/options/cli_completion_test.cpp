@@ -45,7 +45,7 @@ ask fathom render b
 ask fathom emit c
 ask fathom completion ''
 ask fathom help lim
-ask fathom dump --after share
+ask fathom dump --after canonicalise
 END
     bash asked.bash)");
   INFO(result.err);
