@@ -104,7 +104,7 @@ class Scene {
   static void march_each(const runtime::Field& field, std::span<const runtime::Ray> rays) {
     std::size_t hits = 0;
     runtime::march_each(field, rays, {},
-                    [&](const runtime::RayHit& a) { hits += a.status == runtime::RayHit::Status::Hit; });
+                        [&](const runtime::RayHit& a) { hits += a.status == runtime::RayHit::Status::Hit; });
     benchmark::DoNotOptimize(hits);
   }
 

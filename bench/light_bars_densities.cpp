@@ -7,9 +7,9 @@
 #include "runtime/light/environment.h"
 #include "runtime/sampling/camera.h"
 #include "runtime/sampling/filter.h"
+#include "tests/support/area_light_patches.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/environments.h"
-#include "tests/support/area_light_patches.h"
 #include "tests/support/materials.h"
 
 namespace fathom::bench {
@@ -71,7 +71,9 @@ Group visible_normals(int samples) {
       group.pairs.push_back({fmt::format("alpha {}, cos {}", alpha, cos), [=] {
                                const runtime::Ggx ggx(alpha);
                                const glm::vec3 wo(std::sqrt(1 - cos * cos), 0, cos);
-                               const auto sample = [&](Sampler& s) { return ggx.sample_visible_normal(wo, s.next2()); };
+                               const auto sample = [&](Sampler& s) {
+                                 return ggx.sample_visible_normal(wo, s.next2());
+                               };
                                const auto pdf = [&](glm::vec3 m) {
                                  return m.z > 0 ? static_cast<double>(ggx.visible_normal_pdf(wo, m)) : 0.0;
                                };
@@ -95,10 +97,11 @@ Group area_lights(int samples) {
   Group group{"lamps of every shape from 4 places", {}};
   for (const test::NamedAreaLight& area_light : test::kAreaLights) {
     for (const glm::dvec3 from : test::kShadingPoints) {
-      group.pairs.push_back(
-          {fmt::format("{} from ({}, {}, {})", area_light.name, from.x, from.y, from.z), [&area_light, from, samples] {
-             return test::area_light_chi_square(runtime::AreaLightShape(area_light.area_light), from, samples, 96);
-           }});
+      group.pairs.push_back({fmt::format("{} from ({}, {}, {})", area_light.name, from.x, from.y, from.z),
+                             [&area_light, from, samples] {
+                               return test::area_light_chi_square(runtime::AreaLightShape(area_light.area_light),
+                                                                  from, samples, 96);
+                             }});
     }
   }
   return group;

@@ -95,7 +95,7 @@ void closed_rooms(const Furnaces& furnaces) {
 
 void even_light(const Furnaces& furnaces) {
   LightScene grey = test::in_even_light(R"({"type": "diffuse", "color": [0.6, 0.6, 0.6]})",
-                                         R"("type": "box", "half_size": [3, 3, 0.5])");
+                                        R"("type": "box", "half_size": [3, 3, 0.5])");
   grey.radiance = 0.6;
   furnaces.row("B17", "P2: box of albedo 0.6 that fills the picture, in an even light", grey);
   const std::string white_metal = R"({"type": "principled", "metalness": 1, "color": [1, 1, 1], "roughness": )";

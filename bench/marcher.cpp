@@ -1,8 +1,8 @@
 // Measures the cost of interpretation per ray. The whole marcher (clipping, steps, brackets, search in double) is
 // compared with the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera
 // rays and on the diffuse rays that leave their hits. Compiled code does not return the convexity radius
-// (vm/number/convexity-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a second
-// row, with the unmodified marcher.
+// (vm/number/convexity-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a
+// second row, with the unmodified marcher.
 //
 //     build/release/bench_marcher
 #include <glm/geometric.hpp>

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "compiler/analysis/extent.h"
 #include "compiler/analysis/area_lights.h"
+#include "compiler/analysis/extent.h"
 #include "compiler/analysis/lints.h"
 #include "compiler/analysis/media.h"
 #include "compiler/analysis/nan_regions.h"
@@ -59,7 +59,8 @@ glm::dvec3 move_to_origin(ElaboratedScene& elaborated, const std::vector<NodeFac
 }
 
 // Looks for the file of the background image, whose path is relative to the scene's folder.
-void find_files(ElaboratedScene& elaborated, const Source& source, const std::string& at_hand, Diagnostics& diagnostics) {
+void find_files(ElaboratedScene& elaborated, const Source& source, const std::string& at_hand,
+                Diagnostics& diagnostics) {
   namespace fs = std::filesystem;
   Background::Image& image = elaborated.background.image;
   if (elaborated.background.type != Background::Type::Image) return;
@@ -85,7 +86,7 @@ Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, cons
   if (on_pass) on_pass(kOrigin, scene);
   if (options.stop_after == kOrigin) return scene;
   for (const Pass& pass : passes()) {
-    if (!(keep_paint && pass.run == unpaint)) scene = pass.run(scene);
+    if (!(keep_paint && pass.run == strip)) scene = pass.run(scene);
     if (on_pass) on_pass(pass.name, scene);
     if (options.stop_after == pass.name) break;
   }
@@ -166,7 +167,7 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
   const NodeFacts& all = known[optimised.root];
   return CompiledField{
       std::move(*distance), std::move(*surface), all.box,      contents(optimised.graph, optimised.root, known),
-      all.lipschitz,        all.cancellation,       all.certified};
+      all.lipschitz,        all.cancellation,    all.certified};
 }
 
 // Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
@@ -323,7 +324,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   }
   if (options.lint || options.lint_picture) lint_light(elaborated->scene, *elaborated, whole->surface, diagnostics);
   mark_mixed(elaborated->scene, elaborated->materials, elaborated->surfaces);
-  std::vector<AreaLight> area_lights = find_area_lights(elaborated->scene, elaborated->surfaces, elaborated->materials);
+  std::vector<AreaLight> area_lights =
+      find_area_lights(elaborated->scene, elaborated->surfaces, elaborated->materials);
   CompiledScene result{static_cast<SceneTables&&>(*elaborated),
                        std::move(*whole),
                        std::move(source),

@@ -1,7 +1,7 @@
 // Difference that each pass of the compiler makes, for `fathom dump --diff`:
 //
 //     ; pass fold: 14 -> 9 nodes, 21 -> 13 ops, cost 95 -> 61
-//     --- unpaint
+//     --- strip
 //     +++ fold
 //     @@ -1,3 +1,2 @@
 //     ...

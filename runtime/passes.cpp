@@ -51,7 +51,8 @@ Stats Passes::run(SampleRange samples) {
 }
 
 RenderEnd Passes::end() const {
-  if (shared_film_.end() != RenderEnd::Done || context_.settings.noise_threshold.value_or(0) <= 0) return shared_film_.end();
+  if (shared_film_.end() != RenderEnd::Done || context_.settings.noise_threshold.value_or(0) <= 0)
+    return shared_film_.end();
   const Tiles tiles(context_.settings.crop, kAdaptiveTile);
   for (std::int64_t i = 0; i < tiles.count(); ++i) {
     if (image_noise(render_.film, tiles.at(i)) > *context_.settings.noise_threshold) return RenderEnd::Done;
@@ -118,7 +119,8 @@ Stats Passes::run_allocation() {
 }
 
 // Treats `besides` as done, in addition to the samples in the film.
-Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& already_covered) {
+Stats Passes::run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits,
+                       const Coverage& already_covered) {
   const Settings& settings = context_.settings;
   const PixelRect crop = settings.crop;
   const int side = tile_side(crop.width(), crop.height(), settings.tile, settings.threads);

@@ -25,8 +25,9 @@ class Passes {
  private:
   Stats run_adaptive();
   Stats run_round(std::uint32_t end);  // all open tiles, from the last convergence test up to `end`
-  Stats run_allocation();                  // the remaining samples of all tiles
-  Stats run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits, const Coverage& already_covered = {});
+  Stats run_allocation();              // the remaining samples of all tiles
+  Stats run_pass(std::size_t stage, SampleRange samples, const SampleLimits& limits,
+                 const Coverage& already_covered = {});
 
   const RenderContext& context_;
   const RenderOptions& options_;

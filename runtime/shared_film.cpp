@@ -4,7 +4,7 @@
 
 namespace fathom::runtime {
 SharedFilm::SharedFilm(PartialRender& render, std::uint64_t samples, const RenderOptions& options,
-                             Clock::time_point start)
+                       Clock::time_point start)
     : render_(render),
       options_(options),
       samples_(static_cast<double>(samples)),
@@ -13,7 +13,7 @@ SharedFilm::SharedFilm(PartialRender& render, std::uint64_t samples, const Rende
       done_(resumed_) {}
 
 bool SharedFilm::add(const Film& film, const SampleBlock& unit, std::size_t stage, std::uint64_t samples,
-                        std::uint64_t rays) {
+                     std::uint64_t rays) {
   const std::lock_guard lock(mutex_);
   const bool room = render_.film.merge(film, stage);
   render_.covered[stage].add(unit);

@@ -44,8 +44,8 @@ std::optional<AreaLightPlacement> placement_of(const Affine& to_local) {
     if (!(std::abs(glm::length(rows[i]) - length) <= kTolerance * length)) return std::nullopt;
     if (!(std::abs(glm::dot(rows[i], rows[(i + 1) % 3])) <= kTolerance * length * length)) return std::nullopt;
   }
-  return AreaLightPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length), inverse(to_local).translation,
-                   1 / length};
+  return AreaLightPlacement{dmat3(rows[0] / length, rows[1] / length, rows[2] / length),
+                            inverse(to_local).translation, 1 / length};
 }
 
 // Sets the area light's space: the quad's plane becomes the xy plane, the quad's centre the origin.
@@ -62,7 +62,8 @@ void set_quad(AreaLight& area_light, std::span<const double> p, const AreaLightP
   area_light.rotation = dmat3(x, glm::cross(z, x), z);
   area_light.translation = middle;
   area_light.radius = p[12] * place.scale;
-  for (std::size_t i = 0; i < 4; ++i) area_light.corners[i] = dvec2(glm::transpose(area_light.rotation) * (v[i] - middle));
+  for (std::size_t i = 0; i < 4; ++i)
+    area_light.corners[i] = dvec2(glm::transpose(area_light.rotation) * (v[i] - middle));
 }
 
 std::optional<AreaLight> lamp_of(Kind kind, std::span<const double> p, const Affine& to_local) {
@@ -96,7 +97,8 @@ std::optional<AreaLight> lamp_of(Kind kind, std::span<const double> p, const Aff
 // Visits beyond one per node. A non-uniform scale can lead to any number of visits and to no area light.
 constexpr std::size_t kMaxVisits = 8 * kMaxAreaLights;
 
-// Identifies area lights in the same place. Equal area lights that different transforms place there are rare and count twice.
+// Identifies area lights in the same place. Equal area lights that different transforms place there are rare and
+// count twice.
 using LampPlace = std::tuple<int, std::array<double, 12>, std::vector<double>>;
 
 class Finder {
@@ -132,7 +134,8 @@ class Finder {
   }
   std::uint32_t painted(NodeId id) const { return static_cast<std::uint32_t>(graph_.params(id)[0]); }
 
-  // Marks the nodes that hold area lights, with and without a glowing Paint above them. The walk enters only marked nodes.
+  // Marks the nodes that hold area lights, with and without a glowing Paint above them. The walk enters only marked
+  // nodes.
   void mark() {
     holds_.resize(graph_.size());
     for (NodeId id = 0; id < graph_.size(); ++id) {
@@ -200,7 +203,7 @@ class Finder {
 }  // namespace
 
 std::vector<AreaLight> find_area_lights(const Scene& scene, std::span<const Surface> surfaces,
-                             std::span<const Material> materials) {
+                                        std::span<const Material> materials) {
   return Finder(scene, surfaces, materials).take();
 }
 

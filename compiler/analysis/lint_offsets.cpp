@@ -61,7 +61,9 @@ class OffsetLinter {
 
  private:
   Kind kind(NodeId id) const { return field_.graph().kind(id); }
-  SingularValues operator_norm(NodeId id) const { return singular_values(Affine::from_params(field_.graph().params(id))); }
+  SingularValues operator_norm(NodeId id) const {
+    return singular_values(Affine::from_params(field_.graph().params(id)));
+  }
 
   bool falls_short(NodeId id) const {
     if (kind(id) != Kind::Transform) return shortfall_of_periodic(kind(id)).has_value();

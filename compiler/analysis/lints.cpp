@@ -189,9 +189,10 @@ class Linter {
           (kind(id) == Kind::Paint && surface < tables_.surfaces.size() && is_clear(surface)) ||
           std::any_of(children.begin(), children.end(), [&](NodeId child) { return holds_clear_[child]; });
       const bool joins = kind(id) == Kind::Scaled || kind(id) == Kind::Transform || kind(id) == Kind::Union;
-      is_area_light_[id] = kind(id) == Kind::Paint ? emits(id)
-                                             : joins && std::all_of(children.begin(), children.end(),
-                                                                    [&](NodeId child) { return is_area_light_[child]; });
+      is_area_light_[id] = kind(id) == Kind::Paint
+                               ? emits(id)
+                               : joins && std::all_of(children.begin(), children.end(),
+                                                      [&](NodeId child) { return is_area_light_[child]; });
     }
   }
 
@@ -342,7 +343,7 @@ class Linter {
   Containment containment_;
   std::vector<bool> vanishes_;     // [node]
   std::vector<bool> holds_clear_;  // [node] true if light passes some of it, so that its contents show
-  std::vector<bool> is_area_light_;      // [node] true if it consists of area lights alone, by the outermost Paint
+  std::vector<bool> is_area_light_;  // [node] true if it consists of area lights alone, by the outermost Paint
   std::set<std::pair<std::string, std::uint32_t>> warned_;
 };
 

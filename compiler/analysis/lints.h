@@ -1,6 +1,6 @@
 // Lints: warnings W05xx of scenes that are valid but surely unintended or expensive. Examples are parts that never
-// show, blends wider than their operands, features thinner than float resolution, area lights that cannot shine, and warps
-// that make steps many times shorter.
+// show, blends wider than their operands, features thinner than float resolution, area lights that cannot shine, and
+// warps that make steps many times shorter.
 //
 // Boxes and one interval evaluation (compiler/passes/containment.h) find hidden and empty parts. Every report is
 // true, but some of these parts may go unreported.

@@ -332,7 +332,8 @@ void fields(Archive& a, CompiledScene& scene) {
     field(archive, "shift", surface.shift, -kAny, kAny);
   });
   if (a.reading() && !a.failed() && scene.surfaces.empty()) a.fail("there is no surface");
-  list(a, "lamps", scene.area_lights, [&](Archive& archive, AreaLight& area_light) { fields(archive, area_light, scene); });
+  list(a, "area_lights", scene.area_lights,
+       [&](Archive& archive, AreaLight& area_light) { fields(archive, area_light, scene); });
   record(a, "field", static_cast<CompiledField&>(scene));
   media(a, scene);
 }

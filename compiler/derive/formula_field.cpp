@@ -23,8 +23,8 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   }
   // A field that does not change has its box as its only surface, so any constant will do.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
-  params.insert(params.end(),
-                {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? cancellation : 0.0, certified ? 1.0 : 0.0});
+  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? cancellation : 0.0,
+                               certified ? 1.0 : 0.0});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }

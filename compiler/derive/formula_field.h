@@ -11,7 +11,8 @@ namespace fathom::compiler {
 // Like NodeMaker::make(), for every kind of node that scenes have. Expression and Displacement become Bounded nodes
 // with proved numbers. The child of an Expression is the formula. The children of a Displacement are the displaced
 // node and the formula.
-NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children, const SourceLocation& origin);
+NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
+                  const SourceLocation& origin);
 
 // Makes a formula the field of a box with any corners.
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin);

@@ -21,7 +21,8 @@ TextMaker text_maker(const Limits& limits) {
   return [&limits](const Source& scene, Diagnostics& diagnostics) -> std::optional<std::string> {
     Source source = scene;
     const std::optional<ReadScene> read = read_scene(source, diagnostics, limits);
-    const std::optional<ElaboratedScene> checked = read ? elaborate(read->file, diagnostics, {}, limits) : std::nullopt;
+    const std::optional<ElaboratedScene> checked =
+        read ? elaborate(read->file, diagnostics, {}, limits) : std::nullopt;
     if (checked) derive(checked->scene, checked->type_spans, limits, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
     return text::print_text(read->file, source);
@@ -31,7 +32,7 @@ TextMaker text_maker(const Limits& limits) {
 }  // namespace
 
 std::optional<SceneWithFormulas> read_with_formulas(Source& source, Diagnostics& diagnostics, const Limits& limits,
-                                   const ImportReader& imports) {
+                                                    const ImportReader& imports) {
   return read_text_with_formulas(source, limits, diagnostics, {imports, text_maker(limits)});
 }
 

@@ -26,7 +26,7 @@ std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, co
                                     const Definitions& definitions = {}, const ImportReader& imports = {});
 
 // Reads a text scene as a JSON scene that keeps its parameters (frontend/text/read_text.h).
-std::optional<SceneWithFormulas> read_with_formulas(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
-                                   const ImportReader& imports = {});
+std::optional<SceneWithFormulas> read_with_formulas(Source& source, Diagnostics& diagnostics,
+                                                    const Limits& limits = {}, const ImportReader& imports = {});
 
 }  // namespace fathom::compiler

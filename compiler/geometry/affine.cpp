@@ -92,7 +92,9 @@ double max_singular_value(const Affine& a) {
 
 // Computes the smallest singular value from the inverse: squaring loses the digits of a small singular value next to
 // a large one.
-SingularValues singular_values(const Affine& a) { return {1 / max_singular_value(inverse(a)), max_singular_value(a)}; }
+SingularValues singular_values(const Affine& a) {
+  return {1 / max_singular_value(inverse(a)), max_singular_value(a)};
+}
 
 bool is_axis_aligned(const Affine& a) {
   return std::all_of(a.rows.begin(), a.rows.end(),

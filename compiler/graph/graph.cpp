@@ -28,7 +28,8 @@ std::uint64_t hash_of(Kind kind, std::span<const double> params, std::span<const
 
 }  // namespace
 
-NodeId Graph::add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const SourceLocation& origin) {
+NodeId Graph::add(Kind kind, std::span<const double> params, std::span<const NodeId> children,
+                  const SourceLocation& origin) {
   // Copies the spans, which may point into this graph, because the graph's storage is about to move. Adding 0.0 turns
   // -0.0 into 0.0.
   new_params_.assign(params.begin(), params.end());

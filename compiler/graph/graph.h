@@ -156,7 +156,8 @@ struct SourceLocation {
 
 class Graph {
  public:
-  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children, const SourceLocation& origin = {});
+  NodeId add(Kind kind, std::span<const double> params, std::span<const NodeId> children,
+             const SourceLocation& origin = {});
 
   std::size_t size() const { return nodes_.size(); }
   Kind kind(NodeId id) const { return nodes_[id].kind; }

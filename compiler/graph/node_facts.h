@@ -26,8 +26,8 @@ struct NodeFacts {
   // intersection, Euclidean ones rotation. reach <= reach_max <= sqrt 3 reach whenever both are known.
   double reach_max = 1, reach = 1;
   // Bound on the cancellation near the surface, scene units: evaluating f at p meets no coordinate or distance larger
-  // than |p| + cancellation, so the float error of f is at most 10 * 2^-24 * (max(1, |p|, |f|) + cancellation). Large where
-  // large numbers cancel: a ball of radius 1000 whose top is the ground, a group moved far away and back.
+  // than |p| + cancellation, so the float error of f is at most 10 * 2^-24 * (max(1, |p|, |f|) + cancellation). Large
+  // where large numbers cancel: a ball of radius 1000 whose top is the ground, a group moved far away and back.
   double cancellation = 0;
   // f(p) = f(p mirrored in the plane through the origin across this axis), for x, y, z.
   std::array<bool, 3> symmetric = {false, false, false};

@@ -98,8 +98,8 @@ struct Light {
 };
 
 // An area light: an emissive shape of the graph that the renderer can sample, unaltered except for its place and size
-// (compiler/analysis/area_lights.h). A point q of the shape is rotation * q + translation in the programs' coordinates.
-// `rotation` may mirror.
+// (compiler/analysis/area_lights.h). A point q of the shape is rotation * q + translation in the programs'
+// coordinates. `rotation` may mirror.
 struct AreaLight {
   enum class Shape { Sphere, Box, Cylinder, Capsule, Quad };
   Shape shape = Shape::Sphere;
@@ -144,7 +144,7 @@ struct CompiledField {
   Box bound;              // the field is positive outside
   Box contents;           // around all bounded parts of the field; empty if it has none
   double lipschitz = 1;   // |f(p) - f(q)| <= lipschitz * |p - q|
-  double cancellation = 0;   // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
+  double cancellation = 0;  // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   bool certified = true;  // `lipschitz` is proved; false: an estimate (a Mandelbulb is in the scene)
 };
 
@@ -161,7 +161,7 @@ struct CompiledScene : SceneTables, CompiledField {
   glm::dvec3 origin{0};       // place in the scene of the programs' zero, scene units (compiler/analysis/origin.h)
   Box extent;                 // of all bounded parts (compiler/analysis/extent.h); empty if there are none
   std::vector<Medium> media;  // of the transparent materials, in the materials' order
-  std::vector<AreaLight> area_lights;    // in file order; of coincident area lights only the first
+  std::vector<AreaLight> area_lights;         // in file order; of coincident area lights only the first
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates
   std::size_t node_count = 0;                 // number of distinct nodes after the passes
   // E.g. "3 nodes, bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)", in the scene's coordinates.

@@ -115,7 +115,8 @@ struct NodeSpec {
   // Like `check`, for the node given its children. May be null.
   ErrorText (*check_children)(Params params, std::span<const NodeFacts> children) = nullptr;
   // Like `expand`, over the children, for alterations that are composed of other nodes.
-  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children, const SourceLocation& origin) = nullptr;
+  NodeId (*build)(NodeMaker& maker, Params params, std::span<const NodeId> children,
+                  const SourceLocation& origin) = nullptr;
   // Adds the nodes that a composed primitive consists of, and returns the node that stands for the primitive. Null
   // for all rows that have code.
   NodeId (*expand)(Graph& graph, Params params, const SourceLocation& origin) = nullptr;

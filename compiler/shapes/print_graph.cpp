@@ -12,7 +12,7 @@ namespace fathom::compiler {
 namespace {
 
 // Returns the number of leading operands whose order matters. The operands after them may come in any order, which a
-// pass may change (compiler/passes/share.cpp).
+// pass may change (compiler/passes/canonicalise.cpp).
 std::size_t ordered_operands(Kind kind, std::size_t operands) {
   if (spec(kind).commutes || kind == Kind::Union || kind == Kind::Intersection) return 0;
   return kind == Kind::Subtraction ? 1 : operands;

@@ -281,7 +281,7 @@ NodeFacts know_polar(Params p, std::span<const NodeFacts> children) {
   k.reach_max = std::min(k.reach_max, k.reach);
   if (p[1] == kAll) return k;
   k.box = tube(p[7], children[0].box.lo.y - kAside * p[7], children[0].box.hi.y + kAside * p[7]);
-  k.cancellation += radius;      // the angle's sine and cosine are rounded
+  k.cancellation += radius;   // the angle's sine and cosine are rounded
   k.reach = k.reach_max = 1;  // the box's own distance is part of the result
   k.lipschitz = std::max(1.0, k.lipschitz);
   return only_bound(k);

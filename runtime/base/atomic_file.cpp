@@ -163,7 +163,8 @@ bool AtomicFile::copy_temporary() {
   const int from = file_;
   struct stat status {};
   int to = -1;
-  temporary_ = find_name(folder_of(target_), [&](const std::string& name) { return (to = create_locked(name)) >= 0; });
+  temporary_ =
+      find_name(folder_of(target_), [&](const std::string& name) { return (to = create_locked(name)) >= 0; });
   if (to < 0) return false;
   file_ = to;
   bool good =

@@ -123,8 +123,8 @@ bool is_behind(const SampleBlock& piece, const SampleBlock& at) {
   return a.x1 <= b.x0 || (a.x0 >= b.x0 && a.x1 <= b.x1 && piece.samples.last <= at.samples.first);
 }
 
-// Calls use() with each of the canonical blocks that intersects `block`, in order, while use() returns true. Bisection
-// skips the blocks before: rows by y1, columns by x1, ranges by their ends.
+// Calls use() with each of the canonical blocks that intersects `block`, in order, while use() returns true.
+// Bisection skips the blocks before: rows by y1, columns by x1, ranges by their ends.
 template <class Use>
 void each_intersection(Blocks canonicalise, const SampleBlock& block, const Use& use) {
   const auto skip = [](Blocks from, const auto& before) {

@@ -1,10 +1,10 @@
 // Coverage: which samples of which pixels a film has, as blocks of pixels times samples.
 //
 // A block is a rectangle of pixels and a range of their samples. A unit of work takes a block, a sample range or a
-// crop asks for a block, and no block may be in two films that are merged. canonicalise() brings blocks into a canonical
-// form, which depends only on the samples they cover: rows of the image as high as they are alike, cut into columns
-// as wide as they are alike, each with its ranges. Films with the same samples therefore have the same bytes, however
-// they were made.
+// crop asks for a block, and no block may be in two films that are merged. canonicalise() brings blocks into a
+// canonical form, which depends only on the samples they cover: rows of the image as high as they are alike, cut into
+// columns as wide as they are alike, each with its ranges. Films with the same samples therefore have the same bytes,
+// however they were made.
 //
 //     Coverage covered;
 //     covered.add({{0, 0, 16, 16}, {0, 8}});

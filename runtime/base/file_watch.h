@@ -41,7 +41,8 @@ class FileWatch {
     std::optional<Stamp> last_stamp;
     bool is_needed;  // nothing settles while it is missing
   };
-  // Result of a poll: `other` when some file has changed since the poll before, `missing` when a needed file is missing.
+  // Result of a poll: `other` when some file has changed since the poll before, `missing` when a needed file is
+  // missing.
   struct PollResult {
     bool other = false, missing = false;
   };

@@ -59,7 +59,7 @@ struct Stats {
   std::uint64_t peak_memory = 0;       // bytes, of the whole process until now; 0: not known
   std::uint64_t region_bytes = 0;      // bytes of the scene's regions; 0: no regions
   double region_seconds = 0;           // time to build the regions, part of `seconds`
-  std::uint64_t regions_reused = 0;      // how often an earlier render or moment's regions were used again
+  std::uint64_t regions_reused = 0;    // how often an earlier render or moment's regions were used again
   double seconds = 0;                  // wall clock
   int threads = 0;
   std::uint64_t resumed_samples = 0;  // samples of all pixels that a resumed render began with

@@ -29,7 +29,7 @@ struct RayMeasurement {
   double false_hit_ppm = 0;                         // rays reported as hits that miss
   double false_miss_ppm = 0;                        // rays reported as misses that hit
   double exhausted_ppm = 0;                         // rays that ran out of steps
-  double near_miss_ppm = 0;                           // misses too near the surface to exclude a touch; not failures
+  double near_miss_ppm = 0;                         // misses too near the surface to exclude a touch; not failures
   double gross_ppm = 0;                             // hits far from the true hit
   double terr_p50 = 0, terr_p99 = 0, terr_max = 0;  // |t - t_ref| of the hits, scene units
   double nerr_p50 = 0, nerr_p99 = 0, nerr_max = 0;  // angle between the normals, radians

@@ -77,7 +77,8 @@ std::variant<std::vector<Part>, ExitCode> read_parts(const MergeRequest& request
   std::vector<Part> parts;
   for (const std::string& path : request.inputs) {
     auto read = runtime::read_film_header(path, read_limits(request.limits));
-    if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return fail_to_read(*read_error, streams);
+    if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read))
+      return fail_to_read(*read_error, streams);
     parts.push_back({path, std::get<runtime::FilmFile>(std::move(read))});
   }
   // The parts are sorted because the sum takes some facts from the first part. The order of the command line must not
@@ -191,7 +192,8 @@ std::optional<ExitCode> add_up(const std::vector<Part>& parts, const compiler::L
       sum.render = std::move(file.render);
       return std::nullopt;
     }
-    if (!sum.render.film.merge(file.render.film)) warn(streams, overflow_text(fmt::format("samples of `{}`", part.path)));
+    if (!sum.render.film.merge(file.render.film))
+      warn(streams, overflow_text(fmt::format("samples of `{}`", part.path)));
     sum.render.covered.front().add(file.render.covered.front());
   }
   sum.render.covered.front().canonicalise();

@@ -140,7 +140,8 @@ std::optional<ExitCode> put_grid(const PlanRequest& request, const Pilot& pilot,
   if (request.tiles) grid.columns = request.tiles->width, grid.rows = request.tiles->height;
   if (!request.no_pilot) {
     const double frame = pilot.frame_seconds(grid), all = frame * static_cast<double>(grid.frame_count());
-    cut(grid, request.tiles.has_value(), frame, request.unit_time.value_or(default_unit_seconds(all, request.workers)));
+    cut(grid, request.tiles.has_value(), frame,
+        request.unit_time.value_or(default_unit_seconds(all, request.workers)));
   }
   if (request.block) grid.block = std::min(static_cast<std::uint32_t>(*request.block), grid.spp);
   if (grid.columns > grid.width || grid.rows > grid.height) {

@@ -66,8 +66,8 @@ struct TileBuffers {
   using PaddedTile = std::array<std::array<float, kTile + kMaxLanes>, kTile + 2 * kPatch>;
   using Sums = std::array<std::array<Row, 4>, kTile>;  // [y][red, green, blue, weight][x]
 
-  std::array<PaddedTile, 2> distances;  // by the colours of each copy
-  Row dissimilarity, share, similarity;    // of the current row and offset
+  std::array<PaddedTile, 2> distances;   // by the colours of each copy
+  Row dissimilarity, share, similarity;  // of the current row and offset
   // For each set of weights and each copy: sums of the copy's values by the other copy's weights.
   std::array<std::array<Sums, 2>, kCandidates> sums;
 };

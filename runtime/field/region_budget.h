@@ -14,7 +14,7 @@ struct RegionBudget {
   static constexpr std::size_t kBuildShare = 2;
 
   std::size_t memory;                          // bytes that the regions may take
-  std::size_t max_work;                       // instructions that this attempt may evaluate by intervals
+  std::size_t max_work;                        // instructions that this attempt may evaluate by intervals
   std::atomic<std::size_t> bytes = 0;          // of the regions built so far
   std::atomic<std::size_t> pending_bytes = 0;  // of the parts of cells left for other threads, at this level
   std::atomic<std::size_t> work = 0;           // instructions evaluated by intervals so far, in this attempt
@@ -22,9 +22,7 @@ struct RegionBudget {
 
   // Bytes available for building.
   std::size_t build_memory() const { return kBuildShare * memory; }
-  bool is_spent() const {
-    return bytes > memory || pending_bytes > build_memory() || work > max_work || interrupted;
-  }
+  bool is_spent() const { return bytes > memory || pending_bytes > build_memory() || work > max_work || interrupted; }
 };
 
 }  // namespace fathom::runtime

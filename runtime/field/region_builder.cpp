@@ -75,7 +75,8 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
 // much as many instructions of the whole program.
 bool RegionBuilder::split_root() {
   const float all = std::numeric_limits<float>::infinity();
-  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices; choice_factor_ *= 2, budget_.max_work /= 2) {
+  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices;
+       choice_factor_ *= 2, budget_.max_work /= 2) {
     if (plan_.instructions > budget_.max_work) return false;  // needed for the root alone
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->templates_ = {};
@@ -219,7 +220,7 @@ void RegionBuilder::count_bytes() {
   r.summary_.program_templates = r.templates_.size();
   r.constants_->forget_rows();
   r.summary_.bytes = r.nodes_.size() * sizeof(Node) + r.pool_.size() * sizeof(std::uint32_t) + r.templates_.bytes() +
-                   r.constants_->bytes();
+                     r.constants_->bytes();
   constexpr std::size_t kCache = 1u << 20;
   r.tree_.beyond_cache = r.summary_.bytes > kCache;
 }

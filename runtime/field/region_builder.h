@@ -35,7 +35,8 @@ class RegionBuilder {
   RegionPlan plan_;
   vm::Code program_;
   RegionBudget budget_;
-  std::uint32_t choice_factor_ = 1;  // factor on the choices that a leaf may have, raised until the regions fit the budget
+  std::uint32_t choice_factor_ =
+      1;  // factor on the choices that a leaf may have, raised until the regions fit the budget
   std::shared_ptr<Regions> regions_;
 };
 

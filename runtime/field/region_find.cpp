@@ -122,7 +122,7 @@ class TreeDescent {
 };
 
 LookupResult find_all(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
-                     const NearPoints& near) {
+                      const NearPoints& near) {
   return TreeDescent(tree).run(points, count, distance, near);
 }
 
@@ -135,7 +135,7 @@ namespace fathom::runtime {
 HWY_EXPORT(find_all);
 
 LookupResult find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
-                         const NearPoints& near) {
+                          const NearPoints& near) {
   return HWY_DYNAMIC_DISPATCH(find_all)(tree, points, count, distance, near);
 }
 

@@ -42,6 +42,6 @@ struct LookupResult {
 // Sets distance[i] to the leaf's value for points in far leaves, and to anything for other points, which are written
 // to `near`. The array of distances is padded to a multiple of 16.
 LookupResult find_regions(const RegionTree& tree, vm::Points points, std::size_t count, float* distance,
-                         const NearPoints& near);
+                          const NearPoints& near);
 
 }  // namespace fathom::runtime

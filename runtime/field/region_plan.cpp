@@ -23,7 +23,7 @@ constexpr double kFlattest = 1.0 / 1024;
 // FarLevels::most, the maximum distance outside the contents, in edges of the root.
 constexpr float kHighest = 0.1f;
 
-// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/template.h
+// True if both operands of some function are constants. The compiler folds such functions, and vm/prune/program_template.h
 // relies on that.
 bool is_unfolded(const vm::Code& code) {
   for (std::size_t at = 0; at < code.size; at += vm::instruction_length(code.words[at])) {

@@ -31,8 +31,8 @@ void RegionSplitter::run(const RegionCell& cell, RegionPiece& piece) {
   split(cell.part, cell.at, cell.level, cell.limit, cell.unshortened, 0);
 }
 
-void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels,
-                           std::uint32_t first) {
+void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit,
+                           int unshortened_levels, std::uint32_t first) {
   budget_.work += part.sources.size();
   if (budget_.is_spent()) return;
   if (rules_.options.interrupted && rules_.options.interrupted()) {
@@ -56,8 +56,8 @@ void RegionSplitter::split(const vm::PrunedProgram& part, const CellIndex& at, i
   }
 }
 
-void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
-                           std::uint32_t node) {
+void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level,
+                                 float limit, int unshortened_levels, std::uint32_t node) {
   const int unshortened = shorter < kShorterPart || level <= rules_.options.room ? 0 : unshortened_levels + 1;
   if (unshortened > kMaxIdle) return make_leaf(child, limit, node);
   if (level <= kShared) {

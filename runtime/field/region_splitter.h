@@ -81,10 +81,11 @@ class RegionSplitter {
   using Limits = std::array<float, 8>;
 
   // Makes the eight children of a cell, at nodes[first] and on, and splits the children that are not leaves.
-  void split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels, std::uint32_t first);
+  void split(const vm::PrunedProgram& part, const CellIndex& at, int level, float limit, int unshortened_levels,
+             std::uint32_t first);
   // Makes the child a leaf, leaves it for other threads, or splits it.
-  void place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit, int unshortened_levels,
-             std::uint32_t node);
+  void place_child(vm::PrunedProgram& child, double shorter, const CellIndex& at, int level, float limit,
+                   int unshortened_levels, std::uint32_t node);
   // Returns the limit up to which each child's values matter.
   Limits limits_of(const BoxArrays& boxes, float limit) const;
   // Makes far leaves of the children in which all values round to one. Returns these children.

@@ -26,7 +26,8 @@ std::shared_ptr<const Regions> RegionStore::build(const vm::VerifiedProgram& pro
            same_program(entry->program.program(), program.program());
   });
   const bool reused = found != entries_.end();
-  std::shared_ptr<Entry> entry = reused ? *found : std::make_shared<Entry>(Entry{program, contents, options, nullptr});
+  std::shared_ptr<Entry> entry =
+      reused ? *found : std::make_shared<Entry>(Entry{program, contents, options, nullptr});
   entry->options.interrupted = {};  // may refer to objects that will no longer exist
   entry->used = true;
   entry->reused = reused;

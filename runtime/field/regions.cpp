@@ -71,7 +71,7 @@ void Regions::sort(vm::Points points, std::size_t near, RegionScratch& s) const 
 // Finds the leaves of the points outside the root. Points whose leaf needs the whole program, as outside a bounded
 // scene's root, are evaluated at once. Returns the number of points left.
 std::size_t Regions::evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& s,
-                                    vm::Workspace& workspace) const {
+                                      vm::Workspace& workspace) const {
   std::size_t left = 0;
   for (std::size_t j = 0; j < near; ++j) {
     const std::uint32_t i = s.point[j];

@@ -9,7 +9,7 @@
 //     program   the part of the program that matters in the cell, up to the highest value there
 //               (vm/prune/specialise.h)
 //
-// Points in cells whose programs differ only in their constants are evaluated together (vm/prune/template.h).
+// Points in cells whose programs differ only in their constants are evaluated together (vm/prune/program_template.h).
 //
 // A step may leave the cell, and the next point then finds its own cell. The builder splits a cell until its part is
 // short, or until the cell is as small as the scene's number of choices warrants. A grid replaces the top levels.
@@ -58,11 +58,11 @@ struct RegionCounters {
 // Memory that a thread needs to evaluate regions.
 struct RegionScratch {
   template <class T>
-  using PerPoint = std::array<T, kMaxPoints + 16>;  // whole registers are read and written
+  using PerPoint = std::array<T, kMaxPoints + 16>;   // whole registers are read and written
   PerPoint<std::uint32_t> point, ref;                // of the points in no far leaf: index, word of the leaf
   PerPoint<float> limit;
   std::vector<std::vector<vm::TemplateJob>> jobs;  // [template]
-  std::vector<std::uint32_t> active;                  // the templates that have jobs
+  std::vector<std::uint32_t> active;               // the templates that have jobs
   PerPoint<std::uint32_t> instructions;            // [point] number evaluated for the point
   RegionCounters counters;
 };
@@ -146,7 +146,7 @@ class Regions {
   RegionLookup find(float x, float y, float z) const;
   void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
   std::size_t evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
-                             vm::Workspace& workspace) const;
+                               vm::Workspace& workspace) const;
   void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
   void part_of(const Node& node, vm::PrunedProgram& part) const;

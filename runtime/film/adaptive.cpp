@@ -14,7 +14,7 @@ namespace fathom::runtime {
 namespace {
 
 constexpr double kMinShare = 0.5, kMaxShare = 4;  // limits of a share, relative to the average
-constexpr std::uint32_t kFirstTest = 16;     // samples per pixel
+constexpr std::uint32_t kFirstTest = 16;          // samples per pixel
 
 std::uint32_t pilot_samples(int spp) { return static_cast<std::uint32_t>(spp / 2); }
 
@@ -86,7 +86,8 @@ double fitting_factor(const std::vector<SampleDemand>& demands, double budget) {
   for (int i = 0; i < 60; ++i) {
     const double factor = (low + high) / 2;
     double sum = 0;
-    for (const SampleDemand& demand : demands) sum += demand.pixels * std::clamp(factor * demand.weight, demand.min, demand.max);
+    for (const SampleDemand& demand : demands)
+      sum += demand.pixels * std::clamp(factor * demand.weight, demand.min, demand.max);
     (sum < budget ? low : high) = factor;
   }
   return low;
@@ -118,7 +119,8 @@ class SampleAllocation {
     for (const SampleDemand& demand : demands) {
       const double share = std::clamp(factor * demand.weight, demand.min, demand.max);
       constexpr double kRounding = 1e-6;  // error of the factor's bisection
-      const double count = std::min(demand.max, std::floor(share + carried / std::max(1.0, demand.pixels) + kRounding));
+      const double count =
+          std::min(demand.max, std::floor(share + carried / std::max(1.0, demand.pixels) + kRounding));
       carried += demand.pixels * (share - count);
       counts.push_back(static_cast<std::uint32_t>(count));
     }
@@ -199,7 +201,7 @@ void test_convergence(const Film& film, std::uint32_t end, double threshold, Ada
     if (!tile.open()) continue;
     const PixelRect pixels = tiles.at(static_cast<std::int64_t>(i));
     const std::array<bool, 2> converged = {noise_of(film, pixels, 1) <= threshold,
-                                       noise_of(film, pixels, 0) <= threshold};
+                                           noise_of(film, pixels, 0) <= threshold};
     for (std::size_t half = 0; half < 2; ++half) {
       if (tile.ends[half] == 0 && converged[half]) tile.ends[half] = end;
     }

@@ -53,7 +53,7 @@ struct AdaptiveTile {
 };
 
 struct AdaptiveState {
-  std::uint32_t tested_spp = 0;         // number of samples per pixel at the last convergence test
+  std::uint32_t tested_spp = 0;     // number of samples per pixel at the last convergence test
   std::vector<AdaptiveTile> tiles;  // [tile of Tiles(area, kAdaptiveTile)]; empty: the same number everywhere
 
   bool used() const { return !tiles.empty(); }
@@ -63,8 +63,8 @@ struct AdaptiveState {
 // Returns the number of stages of the film: two with a threshold above 0.
 std::size_t adaptive_stages(double threshold);
 
-// Returns the number of samples per pixel at the next convergence test, or 0 after the last one, which has half of the
-// samples. `spp` is the average over the image, at least kMinAdaptiveSpp.
+// Returns the number of samples per pixel at the next convergence test, or 0 after the last one, which has half of
+// the samples. `spp` is the average over the image, at least kMinAdaptiveSpp.
 std::uint32_t next_round(std::uint32_t tested_spp, int spp, double threshold);
 
 // Returns the noise of the pixels of one half of a tile: the root of the mean of v / (b + kDark), with v the variance

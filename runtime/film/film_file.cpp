@@ -38,7 +38,7 @@ class Input {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) {
       read_error_ = {fmt::format("cannot read `{}`: {}", path, error ? error.message() : "it is not a regular file"),
-                 true, false};
+                     true, false};
       return;
     }
     left_ = std::filesystem::file_size(path, error);
@@ -73,7 +73,8 @@ class Input {
     return all.first(count);
   }
   std::span<const std::uint8_t> refuse(std::string_view why, bool not_a_film = false) {
-    if (!read_error_) read_error_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false, not_a_film};
+    if (!read_error_)
+      read_error_ = {fmt::format("`{}` is no film that can be used: {}", path_, why), false, not_a_film};
     return {};
   }
 

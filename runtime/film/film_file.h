@@ -33,7 +33,7 @@ std::vector<std::string> differences(const Identity& first, const Identity& seco
 struct FilmReadError {
   std::string problem;  // a message
   bool missing;         // the file does not exist or cannot be read
-  bool not_a_film;         // the file does not begin like a film, so it is some other file of the user
+  bool not_a_film;      // the file does not begin like a film, so it is some other file of the user
 };
 
 // Appends the film to `file`, which records problems.

@@ -184,7 +184,8 @@ void find_features(PerceivedImage& perceived, int width, int height, float pixel
   normalise(point);
   Plane light = perceived.opponent[0];
   for (float& value : light) value = (value + 16) / 116;
-  perceived.edges = magnitude(convolve(light, width, height, edge, smooth), convolve(light, width, height, smooth, edge));
+  perceived.edges =
+      magnitude(convolve(light, width, height, edge, smooth), convolve(light, width, height, smooth, edge));
   perceived.points =
       magnitude(convolve(light, width, height, point, smooth), convolve(light, width, height, smooth, point));
 }
@@ -202,7 +203,8 @@ PerceivedImage perceive(RgbView image, float pixels_per_degree) {
   }
   find_features(perceived, image.width, image.height, pixels_per_degree);
   for (std::size_t c = 0; c < 3; ++c) {
-    apply_contrast_sensitivity(perceived.opponent[c], image.width, image.height, kSensitivities[c], pixels_per_degree);
+    apply_contrast_sensitivity(perceived.opponent[c], image.width, image.height, kSensitivities[c],
+                               pixels_per_degree);
   }
   return perceived;
 }

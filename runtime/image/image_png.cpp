@@ -22,8 +22,8 @@ void ignore_warning(png_structp, png_const_charp) {}
 // libpng's way out of an error: a jump over C frames, and over none of our frames that has anything to destroy.
 bool write_header(png_structp png, png_infop info, int width, int height, int bits, bool srgb) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
-  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits,
-               PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits, PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
   if (srgb) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_write_info(png, info);
   return true;
@@ -121,8 +121,7 @@ class PngReader {
 
   // Must not throw, because the callers are C frames.
   bool reserve() noexcept try {
-    const double pixels = static_cast<double>(image_.width) * image_.height,
-                 samples = pixels * image_.components;
+    const double pixels = static_cast<double>(image_.width) * image_.height, samples = pixels * image_.components;
     if (pixels > static_cast<double>(kMaxPixels)) {
       problem_ = "it is too large";
       return false;

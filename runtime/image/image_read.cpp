@@ -327,7 +327,7 @@ std::variant<FloatImage, ImageReadError> read_image(const std::string& path, con
   DecodeResult decoded = decode(format->format, bytes, limits.memory);
   if (auto* image = std::get_if<FloatImage>(&decoded)) return std::move(*image);
   return ImageReadError{fmt::format("`{}` is no {} picture that can be read: {}", path, format->ending,
-                                 std::get<std::string>(decoded))};
+                                    std::get<std::string>(decoded))};
 }
 
 }  // namespace fathom::runtime

@@ -132,7 +132,8 @@ double cylinder_pdf(const AreaLight& area_light, dvec3 from, dvec3 hit) {
   const Side side(from, area_light.radius, area_light.half_height);
   const DiscreteDistribution<2> parts = cylinder_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return 0;
-  const bool on_side = std::abs(hit.y) - area_light.half_height < std::sqrt(sqr(hit.x) + sqr(hit.z)) - area_light.radius;
+  const bool on_side =
+      std::abs(hit.y) - area_light.half_height < std::sqrt(sqr(hit.x) + sqr(hit.z)) - area_light.radius;
   if (on_side) return parts.pmf(1) * side.pdf(from, hit);
   const dvec3 up(0, hit.y > 0 ? 1 : -1, 0);
   return parts.pmf(0) * area_to_solid_angle({hit, up}, from, kPi * sqr(area_light.radius));
@@ -145,12 +146,15 @@ double cylinder_distance(const AreaLight& area_light, dvec3 p) {
 
 namespace {
 
-dvec3 ball_of(const AreaLight& area_light, bool upper) { return {0, upper ? area_light.half_height : -area_light.half_height, 0}; }
+dvec3 ball_of(const AreaLight& area_light, bool upper) {
+  return {0, upper ? area_light.half_height : -area_light.half_height, 0};
+}
 
 }  // namespace
 
 double capsule_distance(const AreaLight& area_light, dvec3 p) {
-  return glm::length(p - dvec3(0, std::clamp(p.y, -area_light.half_height, area_light.half_height), 0)) - area_light.radius;
+  return glm::length(p - dvec3(0, std::clamp(p.y, -area_light.half_height, area_light.half_height), 0)) -
+         area_light.radius;
 }
 
 namespace {
@@ -175,7 +179,8 @@ ShapeSample sample_capsule(const AreaLight& area_light, dvec3 from, dvec2 u) {
   const DiscreteDistribution<3> parts = capsule_parts(area_light, from, side);
   if (!(parts.sum() > 0)) return {};
   const std::size_t part = parts.sample(u.x);
-  ShapeSample out = part == 2 ? side.sample(from, u) : sample_ball(from, ball_of(area_light, part == 1), area_light.radius, u);
+  ShapeSample out =
+      part == 2 ? side.sample(from, u) : sample_ball(from, ball_of(area_light, part == 1), area_light.radius, u);
   out.pdf *= parts.pmf(part);
   if (part < 2 && (part == 1 ? out.position.y : -out.position.y) <= area_light.half_height) out.pdf = 0;
   return out;

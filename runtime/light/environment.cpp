@@ -84,8 +84,8 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
   if (type_ == Type::Sky) {
     constexpr int kRows = 64;
     sky_.emplace(background.sky);
-    table_ = PiecewiseConstantSphere(2 * kRows, kRows,
-                         cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
+    table_ = PiecewiseConstantSphere(
+        2 * kRows, kRows, cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
     if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
   }
   for (const compiler::Light& light : scene.lights) {

@@ -60,7 +60,7 @@ class Environment {
   std::shared_ptr<const EnvironmentImage> image_;
   double rotation_sine_ = 0, rotation_cosine_ = 1;  // of the image's rotation
   float strength_ = 1;                      // of the image
-  PiecewiseConstantSphere table_;                       // of a sky or an image, in the image's own directions
+  PiecewiseConstantSphere table_;           // of a sky or an image, in the image's own directions
   std::vector<Disc> discs_;
 };
 

@@ -18,6 +18,7 @@ struct EnvironmentImage {
 
 // Returns the image, or the reason why it cannot be read. NaN and negative values become 0, and infinity becomes the
 // largest number of 16 bits.
-std::variant<EnvironmentImage, ImageReadError> read_environment(const std::string& path, const ReadLimits& limits = {});
+std::variant<EnvironmentImage, ImageReadError> read_environment(const std::string& path,
+                                                                const ReadLimits& limits = {});
 
 }  // namespace fathom::runtime

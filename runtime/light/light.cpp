@@ -95,7 +95,8 @@ void Lights::find_touching() {
   for (std::uint32_t i = 0; i < area_lights_.size(); ++i) {
     const AreaLightShape& shape = area_lights_[i].shape;
     const double reach = shape.radius() + 2 * tolerance(shape, shape.centre());
-    tree_.for_each_near(shape.centre(), reach, [&](std::uint32_t other) { area_lights_[i].touches_earlier |= other < i; });
+    tree_.for_each_near(shape.centre(), reach,
+                        [&](std::uint32_t other) { area_lights_[i].touches_earlier |= other < i; });
   }
 }
 
@@ -140,7 +141,7 @@ LightSample Lights::sample(const LightSampleContext& context, float choice, glm:
     if (!chosen) return {};
     const bool area_light = chosen->light < area_lights_.size();
     LightSample out = area_light ? sample_area_light(context, chosen->light, u)
-                           : sample_delta(context, near_delta_lights_[chosen->light - area_lights_.size()]);
+                                 : sample_delta(context, near_delta_lights_[chosen->light - area_lights_.size()]);
     out.pdf *= share.near * chosen->pmf;
     return out;
   }

@@ -1,10 +1,10 @@
 // The lights of a scene, and their sampling. Next-event estimation calls sample(). For a ray that hits a light by
 // itself, pdf_of_hit() and pdf_of_background() return the density with which sample() would have found the light.
 //
-// The lights are the graph's area lights (compiler::AreaLight, compiler/analysis/area_lights.h), the scene's point, spot and
-// directional lights, and the environment beyond the scene (runtime/light/environment.h). Near lights and lights
-// beyond the scene are sampled in proportion to estimates of their irradiance, but each side at least one time in
-// four when there are both. A tree chooses among near lights (runtime/light/light_tree.h).
+// The lights are the graph's area lights (compiler::AreaLight, compiler/analysis/area_lights.h), the scene's point,
+// spot and directional lights, and the environment beyond the scene (runtime/light/environment.h). Near lights and
+// lights beyond the scene are sampled in proportion to estimates of their irradiance, but each side at least one time
+// in four when there are both. A tree chooses among near lights (runtime/light/light_tree.h).
 //
 //     const LightSampleContext context{position, normal};
 //     const LightSample light = lights.sample(context, u0, {u1, u2});
@@ -40,7 +40,7 @@ struct LightSample {
   glm::vec3 radiance{0};
   float pdf = 0;          // per solid angle; delta: the probability of this light; 0: no sample
   bool delta = false;     // no ray hits this light
-  float light_cosine = 1;  // area lights: cosine between their normal and -wi
+  float light_cosine = 1;                                       // area lights: cosine between their normal and -wi
   std::uint32_t material = kNoMaterial, surface = kNoMaterial;  // area lights: indices into the scene's tables
 };
 
@@ -96,7 +96,7 @@ class Lights {
 
   Environment environment_;
   std::vector<DiffuseAreaLight> area_lights_;
-  std::vector<bool> has_area_lights_;     // [surface]
+  std::vector<bool> has_area_lights_;          // [surface]
   std::vector<DeltaLight> near_delta_lights_;  // in the tree numbered after the area lights
   std::vector<DeltaLight> directional_;
   LightTree tree_;

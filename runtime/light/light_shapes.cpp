@@ -143,7 +143,9 @@ AreaLightShape::AreaLightShape(const AreaLight& area_light) : area_light_(area_l
   rectangle_ = area_light.shape == AreaLight::Shape::Quad && is_rectangle(area_light);
 }
 
-dvec3 AreaLightShape::to_local(dvec3 p) const { return glm::transpose(area_light_.rotation) * (p - area_light_.translation); }
+dvec3 AreaLightShape::to_local(dvec3 p) const {
+  return glm::transpose(area_light_.rotation) * (p - area_light_.translation);
+}
 
 ShapeSample AreaLightShape::sample(dvec3 from, glm::vec2 u) const {
   const dvec3 local = to_local(from);

@@ -169,7 +169,8 @@ float LightTree::pmf(const LightSampleContext& context, std::uint32_t light) con
 
 float LightTree::total_importance(const LightSampleContext& context) const {
   if (empty()) return 0;
-  return nodes_[0].second_child == 0 ? total_importance_of(nodes_[0], context) : importance(nodes_[0].bounds, context);
+  return nodes_[0].second_child == 0 ? total_importance_of(nodes_[0], context)
+                                     : importance(nodes_[0].bounds, context);
 }
 
 float LightTree::total_importance_of(const Node& leaf, const LightSampleContext& context) const {

@@ -60,7 +60,8 @@ class LightTree {
   void for_each_near(glm::dvec3 place, double reach, const Use& use) const;
 
  private:
-  // A node's lights are order_[first, first + count). The children of an inner node are the next node and `second_child`.
+  // A node's lights are order_[first, first + count). The children of an inner node are the next node and
+  // `second_child`.
   struct Node {
     LightBounds bounds;
     std::uint32_t first, count;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSkyUnit = 10;              // kcd/m^2 per unit of radiance
 constexpr double kSunOutside = 133.1;        // klx
-constexpr float kMinZenithCosine = 1e-4f;  // of the angle from the zenith, by which Perez' formula divides
+constexpr float kMinZenithCosine = 1e-4f;    // of the angle from the zenith, by which Perez' formula divides
 
 // Source: IEC 61966-2-1:1999.
 glm::vec3 xyY_to_srgb(float x, float y, float Y) {

@@ -24,7 +24,8 @@ class SphericalRectangle {
   };
 
   // The rectangle [x0,x1] x [y0,y1] in the plane at distance z > 0.
-  SphericalRectangle(double x0, double x1, double y0, double y1, double z) : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z_(z) {
+  SphericalRectangle(double x0, double x1, double y0, double y1, double z)
+      : x0_(x0), x1_(x1), y0_(y0), y1_(y1), z_(z) {
     const double least = std::max({y0, -y1, 0.0});
     z2_ = z * z;
     c2_ = z2_ + least * least;

@@ -21,8 +21,8 @@ constexpr double kResolution = 0x1p-40;
 // brackets in float (stream.cpp).
 constexpr double kRootResolution = 0x1p-30;
 // Minimum length of a segment worth intervals, relative to the part that its near end excludes, because intervals
-// cost many evaluations. kCostlyRangeRatio applies where Field::max_informative_length is finite: intervals of iterated maps
-// cost a hundred evaluations.
+// cost many evaluations. kCostlyRangeRatio applies where Field::max_informative_length is finite: intervals of
+// iterated maps cost a hundred evaluations.
 constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
 // An interval is informative if it narrows the bounds on the slope to this share.
 constexpr double kProgress = 0.8;
@@ -31,8 +31,8 @@ constexpr double kProgress = 0.8;
 constexpr double kShorter = 8;
 constexpr std::uint32_t kRetryPeriod = 1u << 10;
 // In a large scene intervals need the whole program, but an evaluation only a small part of it. Intervals are tried
-// after this many evaluations, or after a kIntervalPeriodShare-th of the program's instructions if that is more, and after the
-// same number again.
+// after this many evaluations, or after a kIntervalPeriodShare-th of the program's instructions if that is more, and
+// after the same number again.
 constexpr std::uint32_t kMinIntervalPeriod = 16, kIntervalPeriodShare = 4;
 // kReach: length of a step, relative to the length at which the balls of both ends just touch. kLargestSlope: maximum
 // slope expected, relative to its bound (compare tiered-inl.h).
@@ -46,7 +46,8 @@ constexpr double kLevelRoundings = 4, kMinLevel = 0x1p-20;
 
 }  // namespace
 
-CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const RayInterval& interval)
+CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side,
+                                 const RayInterval& interval)
     : field_(&field),
       origin_(origin),
       direction_(direction),
@@ -57,7 +58,9 @@ CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dve
       done_(false),
       range_ratio_(std::isfinite(field.max_informative_length) ? kCostlyRangeRatio : kRangeRatio),
       max_informative_(field.max_informative_length / glm::length(direction)),
-      interval_period_(field.far_levels.used() ? std::max(kMinIntervalPeriod, field.distance->instructions() / kIntervalPeriodShare) : 0),
+      interval_period_(field.far_levels.used()
+                           ? std::max(kMinIntervalPeriod, field.distance->instructions() / kIntervalPeriodShare)
+                           : 0),
       next_interval_at_(interval_period_ > 0 ? interval_period_ : kRetryPeriod) {
   request(interval.begin, Purpose::Begin);
 }

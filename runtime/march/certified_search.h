@@ -99,9 +99,9 @@ class CertifiedSearch {
   int side_ = 0;
   double max_slope_ = 0;  // largest |dg/dt|
   RayInterval interval_{};
-  double backtrack_ = 0;               // distance by which `begin` moves back next, if the hint was wrong
+  double backtrack_ = 0;          // distance by which `begin` moves back next, if the hint was wrong
   std::vector<Segment> pending_;  // in order along the ray, the nearest last
-  Segment current_{};                 // the nearest segment of all
+  Segment current_{};             // the nearest segment of all
   Bracket bracket_{};
   double slope_ = 0;     // slope of g over the last segment left behind
   double rounding_ = 0;  // rounding error of the field at the last point
@@ -116,8 +116,8 @@ class CertifiedSearch {
   bool near_miss_ = false, done_ = true;
   // Minimum length of a segment worth interval arithmetic, relative to the part that its near end excludes.
   double range_ratio_ = 0;
-  double max_informative_ = 0;       // intervals are not expected to be informative for longer segments
-  std::uint32_t interval_period_ = 0;    // number of evaluations between two intervals in a large scene; else 0
+  double max_informative_ = 0;          // intervals are not expected to be informative for longer segments
+  std::uint32_t interval_period_ = 0;   // number of evaluations between two intervals in a large scene; else 0
   std::uint32_t next_interval_at_ = 0;  // number of evaluations after which intervals are tried regardless
   CertifiedResult result_{};
 };

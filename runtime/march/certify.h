@@ -25,7 +25,7 @@ namespace fathom::runtime {
 // `side` 0 means the sign of f at `begin`. A NearMiss has no root, but comes nearer to one than the resolution of
 // 2^-40 max(1, |p|). The search always ends: after kSearchBudget evaluations its resolution becomes ever coarser, and
 // segments that stay open make a NearMiss.
-CertifiedResult certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side, const RayInterval& interval,
-                  RealScratch& scratch);
+CertifiedResult certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side,
+                        const RayInterval& interval, RealScratch& scratch);
 
 }  // namespace fathom::runtime

@@ -85,7 +85,7 @@ template <class S>
 struct LaneRules {
   S lipschitz, inv_lipschitz;
   S band;        // distance below which a lane tries to cross the surface, scene units
-  S cancellation;   // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
+  S cancellation;  // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
   S unit;        // d_f at unit scale
   S resolution;  // relative width at which a bracket is done
   Method method;

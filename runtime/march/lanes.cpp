@@ -7,8 +7,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/march/lanes.cpp"
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "runtime/march/tiered-inl.h"
 #include "runtime/march/sphere_tracing-inl.h"
+#include "runtime/march/tiered-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::runtime::HWY_NAMESPACE {
@@ -37,7 +37,8 @@ HWY_INLINE N load_number(const S* from) {
 }
 
 template <class N, bool kConvex, class S>
-std::size_t tiered(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t tiered(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules,
+                   LaneNumbers& ended) {
   return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
     Tiered<N, S, kConvex> step(lanes, i, rules);
     return step.run(load_number<N>(at.f + i), load_number<N>((kConvex ? at.convexity : at.f) + i), rules);
@@ -45,7 +46,8 @@ std::size_t tiered(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const
 }
 
 template <class Step, class N, class S>
-std::size_t traced(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules, LaneNumbers& ended) {
+std::size_t traced(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, const LaneRules<S>& rules,
+                   LaneNumbers& ended) {
   return for_each_register<N, S>(count, ended, [&](std::size_t i) HWY_ATTR {
     return trace<Step, N>(lanes, i, rules, load_number<N>(at.f + i));
   });
@@ -63,7 +65,7 @@ std::size_t advance(Lanes<S>& lanes, std::size_t count, FieldSamples<S> at, cons
       return traced<AutomaticStep, N>(lanes, count, at, rules, ended);
     default:
       return at.convexity != nullptr ? tiered<N, true>(lanes, count, at, rules, ended)
-                                  : tiered<N, false>(lanes, count, at, rules, ended);
+                                     : tiered<N, false>(lanes, count, at, rules, ended);
   }
 }
 
@@ -71,8 +73,8 @@ std::size_t advance_f32(Lanes<float>& lanes, std::size_t count, FieldSamples<flo
                         LaneNumbers& ended) {
   return advance<Batch>(lanes, count, at, rules, ended);
 }
-std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, FieldSamples<double> at, const LaneRules<double>& rules,
-                        LaneNumbers& ended) {
+std::size_t advance_f64(Lanes<double>& lanes, std::size_t count, FieldSamples<double> at,
+                        const LaneRules<double>& rules, LaneNumbers& ended) {
   return advance<Real>(lanes, count, at, rules, ended);
 }
 std::size_t batch_lanes() { return sizeof(Batch) / sizeof(float); }

@@ -32,7 +32,7 @@ std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marchi
 }
 
 MarchCounters march_each(const Field& field, std::span<const Ray> rays, const Marching& marching,
-                     const std::function<void(const RayHit&)>& use) {
+                         const std::function<void(const RayHit&)>& use) {
   const std::unique_ptr<Marcher> marcher = make_marcher(field, marching);
   std::vector<RayHit> ray_hits;
   for (std::size_t next = 0; next < rays.size() || !marcher->empty();) {

@@ -37,7 +37,7 @@ std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marchi
 
 // Follows all `rays`, whose ids are their indices, and calls `use` with each result.
 MarchCounters march_each(const Field& field, std::span<const Ray> rays, const Marching& marching,
-                     const std::function<void(const RayHit&)>& use);
+                         const std::function<void(const RayHit&)>& use);
 
 // The results of all rays, in order: ray_hits[i].id == i.
 struct MarchResult {

@@ -35,8 +35,8 @@ void Marcher::begin_waiting() {
 
 void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                            std::uint64_t instructions) {
-  searched_.push_back(
-      {CertifiedSearch(field_, ray.origin, ray.direction, side, interval), ray.entry, ray.id, evaluations, instructions});
+  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, interval), ray.entry, ray.id,
+                       evaluations, instructions});
 }
 
 // Searches as long as enough rays are left to fill the machine's registers, or no other rays are under way.

@@ -12,9 +12,9 @@
 #include "runtime/base/stage_clock.h"
 #include "runtime/base/stats.h"
 #include "runtime/field/field.h"
+#include "runtime/march/certified_search.h"
 #include "runtime/march/clip.h"
 #include "runtime/march/ray.h"
-#include "runtime/march/certified_search.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
@@ -140,7 +140,7 @@ class Marcher {
 
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
-  const std::size_t min_batch_;  // minimum number of rays worth a search
+  const std::size_t min_batch_;     // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].
   std::vector<double> points_[3], values_;

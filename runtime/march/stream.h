@@ -31,8 +31,8 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
-  const bool takes_slope_hint_;     // rays begin with Ray::slope, unlike those of the baseline methods
-  const int max_lanes_;  // maximum number in use
+  const bool takes_slope_hint_;  // rays begin with Ray::slope, unlike those of the baseline methods
+  const int max_lanes_;          // maximum number in use
   const bool use_convexity_;
   const std::size_t register_lanes_;             // points per register; each evaluation fills whole registers
   std::array<ClippedRay, kLanes> clipped_rays_;  // [lane]

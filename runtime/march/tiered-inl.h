@@ -9,10 +9,10 @@
 // Illinois method: an end that stays twice running has its value halved, which pulls the secant towards that end
 // (Dowell and Jarratt, "A Modified Regula Falsi Method", 1971).
 //
-// If the field is known to be convex around a sample (vm/number/convexity-inl.h), the line through this sample and the
-// one before is a lower bound of the field further on. A step to the zero of the line is safe, however long, and a
-// step that crosses the surface there passes over nothing. A rising line is safe up to where another object may come
-// near.
+// If the field is known to be convex around a sample (vm/number/convexity-inl.h), the line through this sample and
+// the one before is a lower bound of the field further on. A step to the zero of the line is safe, however long, and
+// a step that crosses the surface there passes over nothing. A rising line is safe up to where another object may
+// come near.
 #if defined(FATHOM_RUNTIME_TIERED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_RUNTIME_TIERED_INL
 #undef FATHOM_RUNTIME_TIERED_INL
@@ -94,7 +94,8 @@ class Tiered {
     free_length_ = r_;
     if constexpr (kConvex) extend_by_convexity(convex, stepped, rules);
     update_relaxation(stepped, failed);
-    const N onwards = next_accepted(accepted, stepped), back = next_rejected(failed, failed & crossing, failed & retreating);
+    const N onwards = next_accepted(accepted, stepped),
+            back = next_rejected(failed, failed & crossing, failed & retreating);
     next_ = select(accepted, onwards, back);
     rows_.put(kR, select(accepted, free_length_, last_r_));
     if (any(bracketed)) refine(bracketed, refining & (g_ > k(0)), crossed);
@@ -137,7 +138,8 @@ class Tiered {
     const N unit = N::broadcast(rules.unit), known = min(convex, k(kMaxConvexityRadius));
     const N run = t_ - last_t_, errors = k(2) * error_ + unit * (run + last_g_);  // errors: of both values
     const N reach = known - unit * known - error_;
-    line_holds_ = stepped & (lanes_.get(kSide) > k(0)) & (last_g_ + errors < reach - N::broadcast(rules.lipschitz) * run);
+    line_holds_ =
+        stepped & (lanes_.get(kSide) > k(0)) & (last_g_ + errors < reach - N::broadcast(rules.lipschitz) * run);
     line_length_ = reach * inv_lipschitz_;
     const N drop = last_g_ - g_ + errors;
     const N meets = select(drop > k(0), (g_ - error_) * run / drop, line_length_);
@@ -255,7 +257,7 @@ class Tiered {
   N error_, g_, r_, t_;         // the sample's d_f, g, safe radius and t
   N last_t_, last_g_, last_r_;  // the last accepted sample's, of lanes that walk
   N band_, max_gap_, evaluations_;
-  Mask line_holds_;     // kConvex only: the line through both samples holds
+  Mask line_holds_;              // kConvex only: the line through both samples holds
   N line_length_, free_length_;  // length over which the line holds; length that is free
   N phase_, next_;   // values that finish() stores
   SharedRows<N> rows_;

@@ -52,9 +52,11 @@ BsdfSample Bsdf::sample_transparent(float lobe) const {
 
 BsdfSample Bsdf::sample_layers(float lobe, glm::vec2 u) const {
   const Principled::Sample local_sample = layers_->principled.sample(lobe, u);
-  BsdfSample sample{
-      .wi = layers_->frame.to_world(local_sample.wi), .is_transmission = local_sample.is_transmission, .is_null = local_sample.keeps_medium && local_sample.delta};
-  if (local_sample.is_transmission && !local_sample.keeps_medium) sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
+  BsdfSample sample{.wi = layers_->frame.to_world(local_sample.wi),
+                    .is_transmission = local_sample.is_transmission,
+                    .is_null = local_sample.keeps_medium && local_sample.delta};
+  if (local_sample.is_transmission && !local_sample.keeps_medium)
+    sample.eta_scale = layers_->principled.eta() * layers_->principled.eta();
   if (local_sample.delta) {
     if (local_sample.keeps_medium) sample.wi = -wo_;  // bit for bit
     sample.weight = local_sample.weight;

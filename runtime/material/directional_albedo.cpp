@@ -266,19 +266,24 @@ DirectionalAlbedo conductor_loss(float alpha) {
 }
 
 DirectionalAlbedo reflection_albedo(float alpha, float eta) {
-  const auto row_at = [](int slice, int node) -> const DirectionalAlbedo& { return outside_albedo(slice, node).reflected; };
+  const auto row_at = [](int slice, int node) -> const DirectionalAlbedo& {
+    return outside_albedo(slice, node).reflected;
+  };
   return interpolate(alpha, eta, Between::Reflectances, row_at);
 }
 
 DirectionalAlbedo dielectric_loss(float alpha, float eta) {
   if (eta < 1) return interpolate(alpha, 1 / eta, Between::Indices, inside_loss);
-  const auto row_at = [](int slice, int node) -> const DirectionalAlbedo& { return outside_albedo(slice, node).lost; };
+  const auto row_at = [](int slice, int node) -> const DirectionalAlbedo& {
+    return outside_albedo(slice, node).lost;
+  };
   return interpolate(alpha, eta, Between::Indices, row_at);
 }
 
 DirectionalAlbedo smooth_albedo(float eta) {
   DirectionalAlbedo row;
-  for (int i = 0; i < kNodes; ++i) row.node[static_cast<std::size_t>(i)] = fresnel(DirectionalAlbedo::node_cos(i), eta);
+  for (int i = 0; i < kNodes; ++i)
+    row.node[static_cast<std::size_t>(i)] = fresnel(DirectionalAlbedo::node_cos(i), eta);
   return row;
 }
 

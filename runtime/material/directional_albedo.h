@@ -46,8 +46,8 @@ DirectionalAlbedo dielectric_loss(float alpha, float eta);
 // Returns the part that a smooth dielectric reflects, for eta >= 1.
 DirectionalAlbedo smooth_albedo(float eta);
 
-// Return the part of the light reflected by a rough interface that a coat takes because the light leaves lower than it
-// came: the mean of max(0, coat(cos_i) - coat(cos_o)). The coat passes light as on the way in or on the way out,
+// Return the part of the light reflected by a rough interface that a coat takes because the light leaves lower than
+// it came: the mean of max(0, coat(cos_i) - coat(cos_o)). The coat passes light as on the way in or on the way out,
 // whichever passes less. `coat` is the part that the coat reflects, which must fall as the cosine rises, otherwise
 // the result is too small. eta >= 1. Each thread keeps one row per material.
 DirectionalAlbedo coat_loss_of_conductor(float alpha, const DirectionalAlbedo& coat);

@@ -40,8 +40,8 @@ inline float fresnel_transmittance(float cos_i, float cos_t, float eta) {
   return 2 * eta * cos_i * cos_t * (1 / (parallel * parallel) + 1 / (perpendicular * perpendicular));
 }
 
-// Returns fresnel_reflectance() when only the cosine in [0,1] on the side of the incident light is known. 1 if no light
-// passes (total internal reflection).
+// Returns fresnel_reflectance() when only the cosine in [0,1] on the side of the incident light is known. 1 if no
+// light passes (total internal reflection).
 inline float fresnel(float cos_i, float eta) {
   const float sin2_t = (1 - cos_i * cos_i) / (eta * eta);
   if (sin2_t >= 1) return 1;

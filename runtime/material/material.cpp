@@ -91,7 +91,7 @@ Materials::Materials(const compiler::CompiledScene& scene)
   for (const compiler::Material& m : scene.materials) {
     points_.push_back(untextured_point(m));
     any_null_transmission_ |= m.thin_walled || points_.back().has_null_transmission() ||
-                      std::any_of(m.textured.begin(), m.textured.end(), may_open);
+                              std::any_of(m.textured.begin(), m.textured.end(), may_open);
   }
 }
 

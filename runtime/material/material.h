@@ -34,8 +34,8 @@ struct MaterialPoint {
 
   // Returns the radiance that leaves the surface to both sides: the opaque part emits, through the coat.
   glm::vec3 emitted_radiance() const;
-  // transmits(): true if a path may get through the surface. has_interior(): true if the path is then in a medium of this
-  // index.
+  // transmits(): true if a path may get through the surface. has_interior(): true if the path is then in a medium of
+  // this index.
   bool transmits() const { return is_transmissive() || opacity < 1; }
   bool has_interior() const { return is_transmissive() && !thin_walled; }
   // True if light may continue straight through the surface (Bsdf::null_transmission).
@@ -94,7 +94,7 @@ class Materials {
 
   const compiler::CompiledScene* scene_;
   std::vector<MaterialPoint> points_;  // [material]
-  std::vector<bool> uses_object_space_;           // [material]
+  std::vector<bool> uses_object_space_;  // [material]
   bool any_null_transmission_ = false;
 };
 

@@ -120,7 +120,8 @@ void Principled::add_metal(const MaterialPoint& m) {
   const glm::vec3 color = average * average * once / (1.0f - average * (1 - once));
   metal_compensation_.row = inside_ ? lost : add_coat_loss(attenuate_by_coat(lost), kReflectsAll);
   const float norm = metal_compensation_.row.average();
-  if (norm > 0) metal_compensation_.strength = coat_tint_ * m.metalness * color * (metal_compensation_.row.at(wo_.z) / norm);
+  if (norm > 0)
+    metal_compensation_.strength = coat_tint_ * m.metalness * color * (metal_compensation_.row.at(wo_.z) / norm);
 }
 
 void Principled::add_interface(const MaterialPoint& m) {
@@ -133,14 +134,15 @@ void Principled::add_interface(const MaterialPoint& m) {
   if (has_glass && !smooth_interface_) add_glass_compensation(m);
 }
 
-// Adds the diffuse base, which lies bare if the surroundings are denser, as from inside, because total reflection would
-// hide the diffuse base.
+// Adds the diffuse base, which lies bare if the surroundings are denser, as from inside, because total reflection
+// would hide the diffuse base.
 void Principled::add_diffuse_base(const MaterialPoint& m) {
   const float part = (1 - m.metalness) * (1 - m.transmission);
   DirectionalAlbedo passed = DirectionalAlbedo::constant(1);
   if (!inside_ && eta_ >= 1) {
     over_diffuse_ = part;
-    const DirectionalAlbedo reflected = smooth_interface_ ? smooth_albedo(eta_) : reflection_albedo(ggx_.alpha(), eta_);
+    const DirectionalAlbedo reflected =
+        smooth_interface_ ? smooth_albedo(eta_) : reflection_albedo(ggx_.alpha(), eta_);
     interface_reflectance_o_ = reflected.at(wo_.z);
     passed = complement_of(reflected);
   }
@@ -180,7 +182,7 @@ void Principled::add_glass_compensation(const MaterialPoint& m) {
   const float scale = thin_ ? 1 : 1 / (eta_ * eta_);
   transmitted_compensation_.row = beyond;
   transmitted_compensation_.strength = transmitted_coat_tint_ * m.transmission_color *
-                           (part * passed * scale * at_o / std::max(average_here, average_beyond));
+                                       (part * passed * scale * at_o / std::max(average_here, average_beyond));
 }
 
 // Sets the probability of each lobe to about its part in the light that goes to wo.
@@ -191,10 +193,13 @@ void Principled::set_lobe_probabilities() {
   const glm::vec3 glossy = tint_ * (over_diffuse_ * over_diffuse + glass_ * slab);
   const float away = thin_ ? 1 : eta_ * eta_;
   if (coat_weight_ > 0 && !inside_) lobe_probability_[kCoat] = 1 - coat_transmittance_o_;
-  if (metal_ > 0) lobe_probability_[kMetal] = coat_transmittance_o_ * metal_ * max_of(coat_tint_ * metal_tint_(wo_.z));
-  lobe_probability_[kInterface] = coat_transmittance_o_ * (max_of(coat_tint_ * glossy) + max_of(interface_transmittance(1 - reflected)));
+  if (metal_ > 0)
+    lobe_probability_[kMetal] = coat_transmittance_o_ * metal_ * max_of(coat_tint_ * metal_tint_(wo_.z));
+  lobe_probability_[kInterface] =
+      coat_transmittance_o_ * (max_of(coat_tint_ * glossy) + max_of(interface_transmittance(1 - reflected)));
   // Facets may let through light that the surface itself reflects totally.
-  if (glass_ > 0 && !smooth_interface_) lobe_probability_[kInterface] = std::max(lobe_probability_[kInterface], kMinChance * glass_);
+  if (glass_ > 0 && !smooth_interface_)
+    lobe_probability_[kInterface] = std::max(lobe_probability_[kInterface], kMinChance * glass_);
   lobe_probability_[kDiffuse] = max_of(diffuse_albedo_);
   lobe_probability_[kCompensation] = max_of(metal_compensation_.albedo() + glass_compensation_.albedo());
   lobe_probability_[kTransmittedCompensation] = away * max_of(transmitted_compensation_.albedo());
@@ -205,12 +210,17 @@ void Principled::set_lobe_probabilities() {
 }
 
 bool Principled::is_delta() const {
-  const bool rough = (!smooth_coat_ && lobe_probability_[kCoat] > 0) || (!smooth_metal_ && lobe_probability_[kMetal] > 0) ||
+  const bool rough = (!smooth_coat_ && lobe_probability_[kCoat] > 0) ||
+                     (!smooth_metal_ && lobe_probability_[kMetal] > 0) ||
                      (!smooth_interface_ && lobe_probability_[kInterface] > 0);
-  return !rough && lobe_probability_[kDiffuse] + lobe_probability_[kCompensation] + lobe_probability_[kTransmittedCompensation] == 0;
+  return !rough && lobe_probability_[kDiffuse] + lobe_probability_[kCompensation] +
+                           lobe_probability_[kTransmittedCompensation] ==
+                       0;
 }
 
-float Principled::coat_transmittance(float cos) const { return coat_weight_ > 0 ? 1 - coat_weight_ * coat_albedo_.at(cos) : 1; }
+float Principled::coat_transmittance(float cos) const {
+  return coat_weight_ > 0 ? 1 - coat_weight_ * coat_albedo_.at(cos) : 1;
+}
 
 // Returns `row`, a function of directions outside, times the part of the light that the coat lets through.
 DirectionalAlbedo Principled::attenuate_by_coat(DirectionalAlbedo row) const {
@@ -224,7 +234,7 @@ DirectionalAlbedo Principled::attenuate_by_coat(DirectionalAlbedo row) const {
 DirectionalAlbedo Principled::add_coat_loss(DirectionalAlbedo row, float eta) const {
   if (coat_weight_ == 0 || eta < 1) return row;
   const DirectionalAlbedo lost = eta == kReflectsAll ? coat_loss_of_conductor(ggx_.alpha(), coat_albedo_)
-                                             : coat_loss_of_reflection(ggx_.alpha(), eta, coat_albedo_);
+                                                     : coat_loss_of_reflection(ggx_.alpha(), eta, coat_albedo_);
   for (std::size_t i = 0; i < DirectionalAlbedo::kNodes; ++i) row.node[i] += coat_weight_ * lost.node[i];
   return row;
 }
@@ -255,11 +265,14 @@ Principled::Sample Principled::sample(float lobe, glm::vec2 u) const {
       return {-wo_, glm::vec3(1), true, true, true};
     case kCoat:
       if (!smooth_coat_) return {.wi = reflect_about(wo_, coat_ggx_.sample_visible_normal(wo_, u))};
-      return {mirrored(wo_), glm::vec3(coat_weight_ * opacity_ * fresnel(wo_.z, coat_eta_) / lobe_probability_[kCoat]), true};
+      return {mirrored(wo_),
+              glm::vec3(coat_weight_ * opacity_ * fresnel(wo_.z, coat_eta_) / lobe_probability_[kCoat]), true};
     case kMetal:
       if (!smooth_metal_) return {.wi = reflect_about(wo_, ggx_.sample_visible_normal(wo_, u))};
-      return {mirrored(wo_), coat_tint_ * metal_tint_(wo_.z) * (metal_ * opacity_ * coat_transmittance_o_ / lobe_probability_[kMetal]),
-              true};
+      return {
+          mirrored(wo_),
+          coat_tint_ * metal_tint_(wo_.z) * (metal_ * opacity_ * coat_transmittance_o_ / lobe_probability_[kMetal]),
+          true};
     case kInterface:
       return sample_interface(std::min(lobe / lobe_probability_[kInterface], kBelowOne), u);
     case kDiffuse:
@@ -284,9 +297,11 @@ Principled::Sample Principled::sample_interface(float lobe, glm::vec2 u) const {
     sample.weight = coat_tint_ * interface_reflectance(reflected) * (part / probability);
     return sample;
   }
-  Sample sample{.wi = transmitted_direction(m), .delta = smooth_interface_, .is_transmission = true, .keeps_medium = thin_};
+  Sample sample{
+      .wi = transmitted_direction(m), .delta = smooth_interface_, .is_transmission = true, .keeps_medium = thin_};
   const float seen = inside_ ? coat_transmittance(std::min(std::abs(sample.wi.z), 1.0f)) : 1;
-  sample.weight = interface_transmittance(1 - reflected) * (seen * part / ((1 - probability) * (thin_ ? 1 : eta_ * eta_)));
+  sample.weight =
+      interface_transmittance(1 - reflected) * (seen * part / ((1 - probability) * (thin_ ? 1 : eta_ * eta_)));
   return sample;
 }
 
@@ -319,7 +334,8 @@ BsdfValue Principled::evaluate(glm::vec3 wi) const {
 
 void Principled::add_glossy(glm::vec3 wi, BsdfValue& value) const {
   const bool coat = !smooth_coat_ && lobe_probability_[kCoat] > 0;
-  const bool metal = !smooth_metal_ && lobe_probability_[kMetal] > 0, interface = !smooth_interface_ && lobe_probability_[kInterface] > 0;
+  const bool metal = !smooth_metal_ && lobe_probability_[kMetal] > 0,
+             interface = !smooth_interface_ && lobe_probability_[kInterface] > 0;
   if (!coat && !metal && !interface) return;
   const glm::vec3 m = glm::normalize(wo_ + wi);
   const float cos_m = half_vector_cosine(wo_, wi);
@@ -374,14 +390,16 @@ void Principled::add_refracted(glm::vec3 wi, BsdfValue& value) const {
   const float turn = cos_i / static_cast<float>(length2);
   const float passes = inside_ ? coat_transmittance(std::min(-wi.z, 1.0f)) : coat_transmittance_o_;
   value.f += interface_transmittance(passed) * (opacity_ * passes * visible * ggx_.g1(-wi.z) * turn);
-  value.pdf += lobe_probability_[kInterface] * (1 - reflection_probability(1 - passed)) * visible * turn * (eta_ * eta_);
+  value.pdf +=
+      lobe_probability_[kInterface] * (1 - reflection_probability(1 - passed)) * visible * turn * (eta_ * eta_);
 }
 
 void Principled::add_thin(glm::vec3 wi, BsdfValue& value) const {
   const glm::vec3 up = below(wi), m = glm::normalize(wo_ + up);
   const float reflected = fresnel(half_vector_cosine(wo_, up), eta_);
   const float passes = inside_ ? coat_transmittance(up.z) : coat_transmittance_o_;
-  value.f += interface_transmittance(1 - reflected) * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, up.z) * up.z);
+  value.f +=
+      interface_transmittance(1 - reflected) * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, up.z) * up.z);
   value.pdf += lobe_probability_[kInterface] * (1 - reflection_probability(reflected)) * ggx_.reflection_pdf(wo_, m);
 }
 

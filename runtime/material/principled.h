@@ -1,14 +1,18 @@
-// A surface in layers: a coat over metal, glass, or a diffuse base under a dielectric interface. A subset of OpenPBR 1.1
-// (Academy Software Foundation, "OpenPBR Surface", 2024), in local space: the normal is z, and wo lies above.
+// A surface in layers: a coat over metal, glass, or a diffuse base under a dielectric interface. A subset of
+// OpenPBR 1.1 (Academy Software Foundation, "OpenPBR Surface", 2024), in local space: the normal is z, and wo lies
+// above.
 //
 //     opacity * [ coat over ( metalness * metal + (1 - metalness) * body ) ]
 //     body = transmission * glass + (1 - transmission) * interface over diffuse base
 //
 // Every part is reciprocal: f(wo,wi) = f(wi,wo), through an interface except for eta^2. No part gives more light than
 // it gets:
-// - The lost light of a rough interface comes back as a diffuse lobe, in proportion to the loss of each direction, and
-//   for glass on both sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017; directional_albedo.h).
-// - The diffuse base gets what the interface lets through, h = 1 - E: h(wo) h(wi) / average (Kelemen and Szirmay-Kalos, "A
+// - The lost light of a rough interface comes back as a diffuse lobe, in proportion to the loss of each direction,
+// and
+//   for glass on both sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017;
+//   directional_albedo.h).
+// - The diffuse base gets what the interface lets through, h = 1 - E: h(wo) h(wi) / average (Kelemen and
+// Szirmay-Kalos, "A
 //   Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001). With diffuse_roughness the
 //   divisor moves towards the greatest h, which may lose a few hundredths.
 // - Glossy parts under the coat are multiplied by min(t(wo), t(wi)), t = 1 - coat_weight E_coat. That is exact for
@@ -16,9 +20,8 @@
 //
 // Differences from OpenPBR: specular_weight changes the index, and so how much light is bent. The coat does not
 // change the interface below it, and its colour does not depend on the angle. There is no fuzz, thin
-// film, anisotropy, subsurface or dispersion. From inside, the diffuse base is seen without an interface, and neither the coat
-// nor specular_color takes part in reflection.
-// Tested by: tests/runtime/material/bsdf_test.cpp
+// film, anisotropy, subsurface or dispersion. From inside, the diffuse base is seen without an interface, and neither
+// the coat nor specular_color takes part in reflection. Tested by: tests/runtime/material/bsdf_test.cpp
 #pragma once
 
 #include <array>
@@ -59,7 +62,16 @@ class Principled {
   float eta() const { return eta_; }  // by which light is bent
 
  private:
-  enum Lobe { kNullTransmission, kCoat, kMetal, kInterface, kDiffuse, kCompensation, kTransmittedCompensation, kLobeCount };
+  enum Lobe {
+    kNullTransmission,
+    kCoat,
+    kMetal,
+    kInterface,
+    kDiffuse,
+    kCompensation,
+    kTransmittedCompensation,
+    kLobeCount
+  };
   // Light that comes back, or passes, diffusely: strength * row(cos_i) * cos_i. The strength depends on wo.
   struct DiffuseLobe {
     glm::vec3 strength{0};
@@ -95,14 +107,14 @@ class Principled {
   Ggx ggx_, coat_ggx_;
   float coat_weight_ = 0, coat_eta_ = 1;
   DirectionalAlbedo coat_albedo_;
-  float coat_transmittance_o_ = 1;                        // coat_transmittance(wo)
+  float coat_transmittance_o_ = 1;                     // coat_transmittance(wo)
   glm::vec3 coat_tint_{1}, transmitted_coat_tint_{1};  // of reflected light, of light that crosses once
   float metal_ = 0;                                // weight of the metal, times specular_weight
   F82Tint metal_tint_;
   glm::vec3 tint_{1};                   // specular_color
   float over_diffuse_ = 0, glass_ = 0;  // weights of the interface over diffuse base, and of that of glass
   glm::vec3 glass_tint_{1};             // transmission_color
-  float interface_reflectance_o_ = 0;                // part of wo's light that the interface over diffuse base reflects
+  float interface_reflectance_o_ = 0;   // part of wo's light that the interface over diffuse base reflects
   glm::vec3 diffuse_albedo_{0};         // estimate, for wo
   bool rough_diffuse_ = false;
   OrenNayar oren_nayar_;

@@ -150,8 +150,9 @@ std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scen
   return rows;
 }
 
-std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageVariant> variants,
-                                             const ImagePlan& plan, const std::string& scene_name) {
+std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene,
+                                             std::span<const ImageVariant> variants, const ImagePlan& plan,
+                                             const std::string& scene_name) {
   std::vector<ImagePoint> points;
   for (const ImageVariant& variant : variants) {
     // Takes at least two samples, because a single sample lies at the pixel's centre.

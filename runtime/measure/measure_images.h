@@ -47,7 +47,8 @@ std::vector<ImageMeasurement> measure_points(const compiler::CompiledScene& scen
                                              const std::string& scene_name);
 
 // Measures every variant with each of the plan's numbers of samples.
-std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene, std::span<const ImageVariant> variants,
-                                             const ImagePlan& plan, const std::string& scene_name);
+std::vector<ImageMeasurement> measure_images(const compiler::CompiledScene& scene,
+                                             std::span<const ImageVariant> variants, const ImagePlan& plan,
+                                             const std::string& scene_name);
 
 }  // namespace fathom::runtime

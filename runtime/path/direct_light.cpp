@@ -38,8 +38,9 @@ glm::vec3 light_radiance(const RenderContext& context, const PathVertex& vertex,
   const Materials& materials = context.materials;
   if (light.material == kNoMaterial || !materials.is_textured(light.material)) return light.radiance;
   const glm::dvec3 position = vertex.light_context.position + light.distance * glm::dvec3(light.wi);
-  const glm::dvec3 place =
-      materials.uses_object_space(light.material) ? find_object_point(context.scene, context.field, position, scratch).place : position;
+  const glm::dvec3 place = materials.uses_object_space(light.material)
+                               ? find_object_point(context.scene, context.field, position, scratch).place
+                               : position;
   return materials.at(light.material, position, place, scratch.workspace).emitted_radiance();
 }
 

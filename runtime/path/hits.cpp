@@ -57,7 +57,8 @@ void begin_vertex(const HitBatch& batch, std::size_t i, PathState& path, PathVer
 
 }  // namespace
 
-RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool has_null_transmission) {
+RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths,
+                            bool has_null_transmission) {
   const auto tests_shadow = [&](const RayHit& ray_hit) { return paths[ray_hit.id].has_shadow_ray; };
   const auto ends_test = [&](const RayHit& ray_hit) {
     return tests_shadow(ray_hit) && (!has_null_transmission || !is_hit(ray_hit));

@@ -75,8 +75,8 @@ struct RenderOptions : compiler::SettingsOverrides, Execution {
   // Called by one rendering thread at a time, when a unit of work is done or the number of samples left becomes
   // known.
   std::function<void(const Progress&)> on_progress;
-  // Called every kTickSeconds from a thread of its own. A SnapshotReader calls its argument with the render so far, which does
-  // not change during the call: threads that have finished a unit wait.
+  // Called every kTickSeconds from a thread of its own. A SnapshotReader calls its argument with the render so far,
+  // which does not change during the call: threads that have finished a unit wait.
   using SnapshotReader = std::function<void(const std::function<void(const PartialRender&)>&)>;
   std::function<void(const SnapshotReader&)> on_tick;
   // When true, the render begins no unit of work and returns the samples so far.

@@ -2,7 +2,8 @@
 // latitude-longitude image. Within a cell directions are uniform per solid angle.
 //
 // Source: Pharr, Jakob, Humphreys, "Physically Based Rendering", 3rd ed. 2016, sections 13.6.7 and 14.2.4, with the
-// cells' solid angles instead of the sine at their middles. Tested by: tests/runtime/sampling/piecewise_constant_sphere_test.cpp
+// cells' solid angles instead of the sine at their middles. Tested by:
+// tests/runtime/sampling/piecewise_constant_sphere_test.cpp
 #pragma once
 
 #include <glm/vec2.hpp>

@@ -231,7 +231,8 @@ TEST_CASE("I7: thin plates are hit on the near side", "[catalogue]") {
 TEST_CASE("I8: a sphere from a hundred thousand units away", "[catalogue]") {
   const auto scene = scene_of(kSphere);
   const Field field = make_field(scene);
-  const std::vector<Ray> near = rays_at_sphere(test::scaled_cases(20000), 5), far = rays_at_sphere(test::scaled_cases(20000), 1e5);
+  const std::vector<Ray> near = rays_at_sphere(test::scaled_cases(20000), 5),
+                         far = rays_at_sphere(test::scaled_cases(20000), 1e5);
   const Judgement here = judge(march(field, near), near, sphere_distance);
   const Judgement there = judge(march(field, far), far, sphere_distance);
   CHECK(there.wrong() == 0);

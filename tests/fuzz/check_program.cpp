@@ -252,8 +252,8 @@ bool agrees(float whole, float part, float least, float most) {
   return part == whole || (std::isnan(part) && std::isnan(whole));
 }
 
-void check_part(const vm::VerifiedProgram& whole, const vm::PrunedProgram& part, const Cloud& cloud, float least, float most,
-                vm::Workspace& workspace) {
+void check_part(const vm::VerifiedProgram& whole, const vm::PrunedProgram& part, const Cloud& cloud, float least,
+                float most, vm::Workspace& workspace) {
   vm::Program program;
   program.words = part.words, program.doubles = part.doubles, program.locals = part.locals;
   const auto verified = vm::verify(std::move(program));

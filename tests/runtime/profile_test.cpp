@@ -8,8 +8,8 @@
 
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime::profile_test {

@@ -276,7 +276,8 @@ inline LightScene moon(double degrees) {
 
 // Room with all kinds of lights, glass, a mirror and a rough surface, in which all light sampling strategies must
 // agree.
-inline constexpr const char* kAreaLightRoom = R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
+inline constexpr const char* kAreaLightRoom =
+    R"("camera": {"position": [0, 1, 3.6], "target": [0, 0.9, 0], "fov": 55},
     "background": {"bottom": [0.1, 0.1, 0.1], "top": [0.4, 0.5, 0.7]}, "render": {"rr_depth": 4},
     "materials": {"white": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},
       "mirror": {"type": "specular"}, "lamp": {"type": "emissive", "emission": [6, 5, 4]},

@@ -27,7 +27,8 @@ std::string shape_modes(const Program& program, const OpcodeInfo& row, std::uint
   if (row.form != Form::Shape) return "";
   std::string text;
   if (operand_of(word) & kFusedTranslate) {
-    text = fmt::format(" at {} {} {}", program.doubles[moved], program.doubles[moved + 1], program.doubles[moved + 2]);
+    text =
+        fmt::format(" at {} {} {}", program.doubles[moved], program.doubles[moved + 1], program.doubles[moved + 2]);
   }
   return operand_of(word) & kFusedMin ? text + " min" : text;
 }

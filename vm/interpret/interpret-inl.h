@@ -96,7 +96,7 @@ class Outline {
 };
 
 // Source of float immediates: the program, with the same value for all lanes, or a table [immediate][lane], in which
-// each instruction's immediates begin at a multiple of four (vm/prune/template.h).
+// each instruction's immediates begin at a multiple of four (vm/prune/program_template.h).
 enum class Immediate { Program, PerLane };
 
 template <class T, Immediate kFrom = Immediate::Program>

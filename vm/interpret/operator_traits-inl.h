@@ -12,8 +12,8 @@
 #include <type_traits>
 
 #include "vm/interpret/domain-inl.h"
-#include "vm/interpret/outlines-inl.h"
 #include "vm/interpret/operators-inl.h"
+#include "vm/interpret/outlines-inl.h"
 #include "vm/interpret/solids-inl.h"
 #include "vm/program/opcode.h"
 

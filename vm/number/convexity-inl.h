@@ -55,7 +55,8 @@ HWY_INLINE Convex<T> max(const Convex<T>& a, const Convex<T>& b) {
 // Blend v of width k, which equals `sharp` where a and b differ by more than k. Within the distance `apart`, a and b
 // still differ by more than k even if they change in opposite directions.
 template <class T>
-HWY_INLINE Convex<T> blend(const T& v, const Convex<T>& a, const Convex<T>& b, Constant<T> k, const Convex<T>& sharp) {
+HWY_INLINE Convex<T> blend(const T& v, const Convex<T>& a, const Convex<T>& b, Constant<T> k,
+                           const Convex<T>& sharp) {
   const Constant<T> apart = (abs(value_of(a) - value_of(b)) - k) * constant<T>(0.5);
   return {v, max(abs(value_of(v)), min(sharp.convex, apart))};
 }

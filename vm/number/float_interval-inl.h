@@ -1,11 +1,11 @@
 // FloatInterval: the range of f32 results while the point ranges over a box of f32 points; one box per lane.
 //
-// An FloatInterval bounds f32 results, not exact ones. Rounding preserves the order of two numbers, so if an operation is
-// monotone in each operand, the f32 results at the ends are the ends of all f32 results, without outward rounding.
-// The whole line [-inf, inf] means "any value, or NaN", and every value that may be NaN has the whole line. So an
-// infinite end is a value that floats can reach, and 0 times an infinite end is NaN. An undecided comparison gives
-// the hull of both answers. No bound is NaN, and -0 counts as 0. Constants are those of f32 evaluation, and finite.
-// The elementary functions are in enclosure_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
+// A FloatInterval bounds f32 results, not exact ones. Rounding preserves the order of two numbers, so if an
+// operation is monotone in each operand, the f32 results at the ends are the ends of all f32 results, without outward
+// rounding. The whole line [-inf, inf] means "any value, or NaN", and every value that may be NaN has the whole line.
+// So an infinite end is a value that floats can reach, and 0 times an infinite end is NaN. An undecided comparison
+// gives the hull of both answers. No bound is NaN, and -0 counts as 0. Constants are those of f32 evaluation, and
+// finite. The elementary functions are in enclosure_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
 //
 //     x * x - 1 over x in [-1, 2] as a product:    [-2, 4] - 1 = [-3, 3]      with sqr:    [0, 4] - 1 = [-1, 3]
 //
@@ -48,7 +48,9 @@ HWY_INLINE FloatInterval whole_where(BatchMask mask, const FloatInterval& a) {
 // Replaces a NaN bound, the result of cancelling infinities, by an infinite one: min and max return their second
 // operand if the first is NaN.
 HWY_INLINE FloatInterval without_nan(Batch lo, Batch hi) { return {max(lo, -infinity()), min(hi, infinity())}; }
-HWY_INLINE FloatInterval hull(const FloatInterval& a, const FloatInterval& b) { return {min(a.lo, b.lo), max(a.hi, b.hi)}; }
+HWY_INLINE FloatInterval hull(const FloatInterval& a, const FloatInterval& b) {
+  return {min(a.lo, b.lo), max(a.hi, b.hi)};
+}
 HWY_INLINE FloatInterval as_enclosure(const FloatInterval& a) { return a; }
 HWY_INLINE FloatInterval as_enclosure(Batch a) { return {a, a}; }
 HWY_INLINE FloatInterval as_value(const FloatInterval&, Batch k) { return {k, k}; }
@@ -89,7 +91,9 @@ HWY_INLINE FloatInterval operator/(const FloatInterval& a, const FloatInterval& 
 HWY_INLINE FloatInterval operator/(const FloatInterval& a, Batch b) { return a / as_enclosure(b); }
 HWY_INLINE FloatInterval operator/(Batch a, const FloatInterval& b) { return as_enclosure(a) / b; }
 
-HWY_INLINE FloatIntervalMask operator<(const FloatInterval& a, const FloatInterval& b) { return {a.lo < b.hi, a.hi >= b.lo}; }
+HWY_INLINE FloatIntervalMask operator<(const FloatInterval& a, const FloatInterval& b) {
+  return {a.lo < b.hi, a.hi >= b.lo};
+}
 HWY_INLINE FloatIntervalMask operator<(const FloatInterval& a, Batch b) { return {a.lo < b, a.hi >= b}; }
 HWY_INLINE FloatIntervalMask operator<(Batch a, const FloatInterval& b) { return {a < b.hi, a >= b.lo}; }
 HWY_INLINE FloatIntervalMask operator>(const FloatInterval& a, const FloatInterval& b) { return b < a; }

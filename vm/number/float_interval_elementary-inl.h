@@ -1,7 +1,7 @@
-// Elementary functions of FloatInterval: the f32 kernels at the ends, widened by twice a kernel's maximum error, because
-// the kernels of monotone functions are not exactly monotone themselves. A jump inside the operand gives the hull of
-// both sides. If a function is undefined somewhere in the operand, or the operand may be NaN, the result is the whole
-// line.
+// Elementary functions of FloatInterval: the f32 kernels at the ends, widened by twice a kernel's maximum error,
+// because the kernels of monotone functions are not exactly monotone themselves. A jump inside the operand gives the
+// hull of both sides. If a function is undefined somewhere in the operand, or the operand may be NaN, the result is
+// the whole line.
 #if defined(FATHOM_VM_FLOAT_INTERVAL_ELEMENTARY_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_FLOAT_INTERVAL_ELEMENTARY_INL
 #undef FATHOM_VM_FLOAT_INTERVAL_ELEMENTARY_INL
@@ -63,9 +63,15 @@ HWY_INLINE FloatInterval tan(const FloatInterval& a) {
   const BatchMask known = magnitude(a) <= Batch::broadcast(kAngleKnown);
   return whole_where((!known) | passes_multiple(a, kInverseHalfTurn, 0.5), kernel_range(tan(a.lo), tan(a.hi)));
 }
-HWY_INLINE FloatInterval asin(const FloatInterval& a) { return whole_if_whole(a, kernel_range(asin(a.lo), asin(a.hi))); }
-HWY_INLINE FloatInterval acos(const FloatInterval& a) { return whole_if_whole(a, kernel_range(acos(a.hi), acos(a.lo))); }
-HWY_INLINE FloatInterval atan(const FloatInterval& a) { return whole_if_whole(a, kernel_range(atan(a.lo), atan(a.hi))); }
+HWY_INLINE FloatInterval asin(const FloatInterval& a) {
+  return whole_if_whole(a, kernel_range(asin(a.lo), asin(a.hi)));
+}
+HWY_INLINE FloatInterval acos(const FloatInterval& a) {
+  return whole_if_whole(a, kernel_range(acos(a.hi), acos(a.lo)));
+}
+HWY_INLINE FloatInterval atan(const FloatInterval& a) {
+  return whole_if_whole(a, kernel_range(atan(a.lo), atan(a.hi)));
+}
 // Over a box that touches neither the origin nor the branch cut (y = 0, x <= 0), the extremes are at corners.
 HWY_INLINE FloatInterval atan2(const FloatInterval& y, const FloatInterval& x) {
   const Batch zero = Batch::broadcast(0.0f), pi = Batch::broadcast(Precision<Batch>::kPi[0]);

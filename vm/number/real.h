@@ -1,4 +1,4 @@
-// Elementary functions of one double for every layer, the interpreter's own. Those of libm differ from machine to
+// Elementary functions of one double for every layer, the interpreter's own, because libm's differ from machine to
 // machine. Accuracy: vm/number/elementary-inl.h.
 // Tested by: tests/vm/number/elementary_test.cpp
 #pragma once

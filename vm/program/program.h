@@ -8,8 +8,8 @@
 //     sphere 0.5          ; p p'   -> value |p'| - 0.5
 //     drop                ; p p'   -> p
 //
-// The flags kFusedTranslate and kFusedMin (vm/program/opcode.h) fuse these three instructions into one, and also a min that
-// follows:
+// The flags kFusedTranslate and kFusedMin (vm/program/opcode.h) fuse these three instructions into one, and also a
+// min that follows:
 //
 //     sphere 0.5 at 0 1 0
 //     sphere 0.5 at 0 1 0 min

@@ -68,7 +68,9 @@ std::optional<std::string> check_sources(const OpcodeInfo& row, std::uint32_t wo
 std::optional<std::string> check_operand(const OpcodeInfo& row, std::uint32_t word, State& state) {
   const std::uint32_t operand = operand_of(word);
   if (row.form == Form::Unary || row.form == Form::Binary) return check_sources(row, word, state);
-  const std::uint32_t most = row.has_operand ? kMaxOperand : row.form == Form::Shape ? kFusedTranslate | kFusedMin : 0;
+  const std::uint32_t most = row.has_operand           ? kMaxOperand
+                             : row.form == Form::Shape ? kFusedTranslate | kFusedMin
+                                                       : 0;
   if (operand > most) return fmt::format("{} has no operand {}", row.mnemonic, operand);
   if (row.opcode == Opcode::Tee || row.opcode == Opcode::Load) return check_local(row, operand, state);
   return std::nullopt;

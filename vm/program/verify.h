@@ -47,8 +47,13 @@ struct Code {
 class VerifiedProgram {
  public:
   operator Code() const {
-    return {program_.words.data(), program_.doubles.data(), program_.words.size(), program_.locals,
-            max_values_,           max_points_,           choices_};
+    return {program_.words.data(),
+            program_.doubles.data(),
+            program_.words.size(),
+            program_.locals,
+            max_values_,
+            max_points_,
+            choices_};
   }
   const Program& program() const { return program_; }
   std::uint32_t max_values() const { return max_values_; }

@@ -29,7 +29,7 @@ HWY_INLINE float first_of(Batch numbers, BatchMask left) {
   return lanes[hn::FindFirstTrue(FloatLanes(), left.m)];
 }
 
-// Evaluates a shape that differs per lane (vm/prune/template.h): each opcode once, for the lanes that have the
+// Evaluates a shape that differs per lane (vm/prune/program_template.h): each opcode once, for the lanes that have the
 // opcode.
 Batch any_shape(const Vec3<Batch>& p, const Batch* k, Batch which) {
   Batch result = which;
@@ -144,8 +144,8 @@ class LanePrograms {
   }
 
   // Writes the constants in the order in which the interpreter reads them, [constant][lane].
-  HWY_INLINE void put_constants(const ProgramTemplate& program_template, const float* constants, const std::uint32_t* pool,
-                                float* to) const {
+  HWY_INLINE void put_constants(const ProgramTemplate& program_template, const float* constants,
+                                const std::uint32_t* pool, float* to) const {
     for (std::size_t place = 0; place < program_template.quads.size(); ++place) {
       const std::uint32_t* const places = pool + 2 + place;
       const auto row = [&](std::size_t lane)
@@ -176,8 +176,10 @@ class LanePrograms {
 
 void skeleton_batch(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
                     std::span<const TemplateJob> jobs, float* distance, Workspace& workspace) {
-  const std::size_t quads = std::accumulate(program_template.quads.begin(), program_template.quads.end(), std::size_t{0});
-  Interpreter<Batch, Immediate::PerLane> machine(program_template, workspace, 1, quads * kQuad * kLanes * sizeof(float));
+  const std::size_t quads =
+      std::accumulate(program_template.quads.begin(), program_template.quads.end(), std::size_t{0});
+  Interpreter<Batch, Immediate::PerLane> machine(program_template, workspace, 1,
+                                                 quads * kQuad * kLanes * sizeof(float));
   for (std::size_t first = 0; first < jobs.size(); first += kLanes) {
     LanePrograms lanes(jobs.subspan(first));
     lanes.put_constants(program_template, constants.values(), pool, machine.immediate_table());

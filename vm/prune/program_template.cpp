@@ -22,7 +22,8 @@ bool is_polymorphic(std::uint32_t word) {
 
 // Returns the opcode word that a template has for a part's opcode word.
 std::uint32_t as_laid_out(std::uint32_t word) {
-  return is_polymorphic(word) ? opcode_word(Opcode::RoundBox, operand_of(word) | kFusedTranslate | kPolymorphic) : word;
+  return is_polymorphic(word) ? opcode_word(Opcode::RoundBox, operand_of(word) | kFusedTranslate | kPolymorphic)
+                              : word;
 }
 
 // Returns the number of quads of an instruction's constants.
@@ -74,8 +75,8 @@ bool keeps_immediate(std::uint32_t word, std::size_t i) {
   return own >= 0 && is_integer_immediate(row, own);
 }
 
-void append_instruction(const PrunedProgram& part, std::uint32_t word, std::size_t at, std::vector<std::uint32_t>& words,
-                        std::vector<double>& doubles) {
+void append_instruction(const PrunedProgram& part, std::uint32_t word, std::size_t at,
+                        std::vector<std::uint32_t>& words, std::vector<double>& doubles) {
   words.push_back(word), doubles.push_back(0);
   const bool outline = is_outline(word);
   for (std::size_t i = 0; i + 1 < instruction_length(word); ++i) {
@@ -159,7 +160,8 @@ std::size_t Constants::bytes() const {
   return values_.size() * sizeof(float) + (row_at_.size() + source_of_.size()) * sizeof(std::uint32_t);
 }
 
-std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants& constants, std::vector<std::uint32_t>& pool) {
+std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants& constants,
+                                     std::vector<std::uint32_t>& pool) {
   const auto start = pool.size();
   const std::uint32_t number = remainder_of(part);
   const Remainder& frame = remainders_[number];
@@ -173,8 +175,8 @@ std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants&
   return static_cast<std::uint32_t>(start);
 }
 
-void ProgramTemplates::unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool, std::uint32_t at,
-                       PrunedProgram& out) const {
+void ProgramTemplates::unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool,
+                              std::uint32_t at, PrunedProgram& out) const {
   const Remainder& frame = remainders_[pool[at + 1]];
   out.words = frame.words;
   out.doubles.assign(out.words.size(), 0);

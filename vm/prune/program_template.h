@@ -40,8 +40,8 @@ inline std::uint64_t hash_of(std::span<const std::uint32_t> words) {
 
 inline constexpr std::size_t kQuad = 4;  // floats; a row of constants is an integer number of quads
 
-// True if a shape can be laid out as a polymorphic shape (kPolymorphic): its translation, up to kPolymorphicImmediates immediates,
-// its opcode. A shape that costs nothing is a number of a formula.
+// True if a shape can be laid out as a polymorphic shape (kPolymorphic): its translation, up to
+// kPolymorphicImmediates immediates, its opcode. A shape that costs nothing is a number of a formula.
 inline constexpr std::size_t kPolymorphicImmediates = 4;
 constexpr bool can_be_polymorphic(std::string_view immediates, int cost) {
   constexpr int kMaxCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
@@ -76,16 +76,18 @@ class Constants {
 
 struct ProgramTemplate {
   std::vector<std::uint32_t> words;  // float immediates are 0
-  std::vector<double> doubles;          // [word] constants of outlines, which belong to the template; else empty
+  std::vector<double> doubles;       // [word] constants of outlines, which belong to the template; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
   std::vector<std::uint8_t> quads;  // number of quads of each instruction that has constants
 
-  operator Code() const { return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices}; }
+  operator Code() const {
+    return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices};
+  }
 };
 
-// ProgramTemplates and frames of many parts. A part in a pool consists of its template's number, its frame's number, the
-// rows of constants of the template's instructions that have constants, and the offsets in the whole program of the
-// part's other instructions.
+// ProgramTemplates and frames of many parts. A part in a pool consists of its template's number, its frame's number,
+// the rows of constants of the template's instructions that have constants, and the offsets in the whole program of
+// the part's other instructions.
 class ProgramTemplates {
  public:
   // Appends the part to the pool. Returns the index of its first entry.
@@ -108,7 +110,7 @@ class ProgramTemplates {
  private:
   struct Remainder {
     std::vector<std::uint32_t> words;  // the part's, except that float immediates and tags' surfaces are 0
-    std::vector<double> doubles;          // [word] constants of outlines; empty without outlines
+    std::vector<double> doubles;       // [word] constants of outlines; empty without outlines
     std::vector<std::uint32_t> place;  // [instruction] index of its entry in the pool, after the two numbers
     std::uint32_t program_template, locals, max_values, max_points, choices;
     std::uint64_t cost;

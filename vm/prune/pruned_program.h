@@ -15,7 +15,7 @@ namespace fathom::vm {
 // A pruned program, and the position of its instructions in the whole program.
 struct PrunedProgram {
   std::vector<std::uint32_t> words;
-  std::vector<double> doubles;            // [word]
+  std::vector<double> doubles;         // [word]
   std::vector<std::uint32_t> sources;  // [instruction] offset of its opcode word in the whole program
   std::uint32_t locals = 0, max_values = 0, max_points = 0, choices = 0;
   std::uint64_t cost = 0;  // multiply-adds per point, as vm/program/opcodes.def estimates
@@ -24,7 +24,9 @@ struct PrunedProgram {
     return words.size() * (sizeof(std::uint32_t) + sizeof(double)) + sources.size() * sizeof(std::uint32_t);
   }
 
-  operator Code() const { return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices}; }
+  operator Code() const {
+    return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices};
+  }
 };
 
 // Returns the whole program as a part of itself.

@@ -27,8 +27,8 @@ HWY_INLINE BatchMask mask_of(std::uint32_t bits) {
 
 class ChoiceResolution {
  public:
-  HWY_INLINE ChoiceResolution(const ChoiceLink* links, const ChoiceBounds* bounds, float error, DemandedRange* demanded,
-                      LiveOperands* kept)
+  HWY_INLINE ChoiceResolution(const ChoiceLink* links, const ChoiceBounds* bounds, float error,
+                              DemandedRange* demanded, LiveOperands* kept)
       : links_(links), bounds_(bounds), error_(error), demanded_(demanded), live_(kept) {}
 
   HWY_INLINE void reset(std::size_t count) {
@@ -61,8 +61,8 @@ class ChoiceResolution {
     needed = static_cast<std::uint16_t>(needed | bits << (r * kLanes));
   }
 
-  // Resolves choice j, whose users are resolved. Signs are changed so that the lesser operand always wins: the maximum
-  // of a and b is minus the minimum of -a and -b.
+  // Resolves choice j, whose users are resolved. Signs are changed so that the lesser operand always wins: the
+  // maximum of a and b is minus the minimum of -a and -b.
   HWY_INLINE void settle(std::size_t j) {
     const std::uint32_t needed = live_[j].a;
     if (needed == 0) return;
@@ -146,7 +146,7 @@ namespace fathom::vm {
 HWY_EXPORT(settle_all);
 
 void resolve_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, float error, DemandedRange* demanded, LiveOperands* kept) {
+                     float least, float most, float error, DemandedRange* demanded, LiveOperands* kept) {
   HWY_DYNAMIC_DISPATCH(settle_all)(links, bounds, count, root, least, most, error, demanded, kept);
 }
 

@@ -39,12 +39,12 @@ struct LiveOperands {
 
 inline constexpr std::uint32_t kNone = 0xffffffff;
 
-// Resolves choices [0, count), in which users come after the choices they use. `root` is the choice whose value is the
-// program's result, of interest within [least, most]. interest[choice] is scratch, kept[choice] the result. If
+// Resolves choices [0, count), in which users come after the choices they use. `root` is the choice whose value is
+// the program's result, of interest within [least, most]. interest[choice] is scratch, kept[choice] the result. If
 // `error` is above 0, an operand only loses by more than `error` plus kResolveShare of both values, the maximum error
 // of f32.
 void resolve_choices(const ChoiceLink* links, const ChoiceBounds* bounds, std::size_t count, ChoiceLink::Operand root,
-                    float least, float most, float error, DemandedRange* demanded, LiveOperands* kept);
+                     float least, float most, float error, DemandedRange* demanded, LiveOperands* kept);
 
 inline constexpr float kResolveShare = 0x1p-18f;
 

@@ -35,7 +35,8 @@ bool Specialiser::enclose_choices(const PrunedProgram& program, const Boxes& box
   return true;
 }
 
-SlopeBound Specialiser::enclose_choices(const PrunedProgram& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
+SlopeBound Specialiser::enclose_choices(const PrunedProgram& program, glm::dvec3 lo, glm::dvec3 hi,
+                                        Workspace& workspace) {
   program_ = &program;
   independent_ = true;
   is_read_ = false;  // resolve() calls read(), because most callers want only the bound
@@ -89,7 +90,8 @@ void Specialiser::link_choices() {
       producer_choice_[i].less += std::bit_cast<float>(program_->words[node.at + 1]);
     } else {
       for (const std::uint32_t operand : {node.a, node.b, node.c}) {
-        if (operand != kNone && producer_choice_[operand].choice != kNone) links_[producer_choice_[operand].choice].always = true;
+        if (operand != kNone && producer_choice_[operand].choice != kNone)
+          links_[producer_choice_[operand].choice].always = true;
       }
     }
   }
@@ -102,7 +104,7 @@ void Specialiser::resolve(float least, float most, float error) {
   if (independent_) return resolve_pairs(links_.data(), ranges_.data(), links_.size(), live_.data());
   demanded_.resize(links_.size());
   resolve_choices(links_.data(), bounds_.data(), links_.size(), producer_choice_[graph_.root()], least, most, error,
-                 demanded_.data(), live_.data());
+                  demanded_.data(), live_.data());
 }
 
 std::uint32_t Specialiser::choices_left(std::size_t box) const {
@@ -223,8 +225,7 @@ void Specialiser::emit_whole(std::uint32_t id) {
 }
 
 // Emits a Unary or Binary, or the remaining operand of a choice, if that is not on the stack or changes its sign.
-void Specialiser::emit_operator(std::uint32_t id, const DefUseNode& node, std::uint32_t word,
-                                const OpcodeRow& row) {
+void Specialiser::emit_operator(std::uint32_t id, const DefUseNode& node, std::uint32_t word, const OpcodeRow& row) {
   if (node.choice != kNone) {
     const bool has_a = keeps_a(node.choice);
     if (has_a != keeps_b(node.choice)) return emit_lone(id, has_a);

@@ -37,8 +37,8 @@ namespace fathom::vm {
 
 class Specialiser {
  public:
-  // Encloses the program over the boxes, and keeps a reference to the program until the next enclose_choices(). Returns false if
-  // the program has no def-use graph (vm/prune/def_use_graph.h) and cannot be pruned.
+  // Encloses the program over the boxes, and keeps a reference to the program until the next enclose_choices().
+  // Returns false if the program has no def-use graph (vm/prune/def_use_graph.h) and cannot be pruned.
   bool enclose_choices(const PrunedProgram& program, const Boxes& boxes, Workspace& workspace);
   // Encloses the program over one box, number 0, so that parts are valid for the exact function as well. With limits
   // of -infinity and infinity, a part equals the whole program, exactly and in f32, wherever every operation of the
@@ -52,8 +52,8 @@ class Specialiser {
   float lo(std::size_t box) const { return lo_[box]; }
   float hi(std::size_t box) const { return hi_[box]; }
 
-  // Resolves the choices of all boxes for the limits `least` and `most`. Limits of -infinity and infinity preserve the
-  // value everywhere, limits of 0 and 0 its sign. With an `error` above 0, parts are also valid in double with
+  // Resolves the choices of all boxes for the limits `least` and `most`. Limits of -infinity and infinity preserve
+  // the value everywhere, limits of 0 and 0 its sign. With an `error` above 0, parts are also valid in double with
   // unrounded constants: `error`, plus kResolveShare of the values, is the maximum difference of f32 from double in
   // the boxes.
   void resolve(float least, float most, float error = 0);
@@ -107,17 +107,18 @@ class Specialiser {
   const PrunedProgram* program_ = nullptr;
   DefUseGraph graph_;
   bool is_read_ = false;                    // true if graph_ and links_ are those of program_
-  bool independent_ = false;                   // true if each choice is resolved by itself, without limits of its users
+  bool independent_ = false;                // true if each choice is resolved by itself, without limits of its users
   std::vector<ChoiceBounds> bounds_;        // [choice]
   std::vector<ChoiceRange> ranges_;         // [choice] replaces bounds_ if independent_
   std::vector<ChoiceLink::Operand> producer_choice_;  // [node] the choice whose value the node returns, or kNone
   std::vector<ChoiceLink> links_;           // [choice]
-  std::vector<DemandedRange> demanded_;          // [choice]
+  std::vector<DemandedRange> demanded_;     // [choice]
   std::vector<LiveOperands> live_;          // [choice]
   struct ForwardsOperand {
     bool a, b;  // true if the operand comes from the stack and keeps its sign
   };
-  std::vector<ForwardsOperand> forwards_operand_;  // [choice] operands that the choice returns unchanged if kept alone
+  std::vector<ForwardsOperand>
+      forwards_operand_;  // [choice] operands that the choice returns unchanged if kept alone
   alignas(64) std::array<float, kEnclosedBoxes> lo_{}, hi_{};
 
   // Uses of nodes and locals, counted once for the parts of all boxes.

@@ -31,8 +31,8 @@ void enclose_boxes(const Code& program, const Boxes& boxes, float* lo, float* hi
   machine.observer().bounds = choices;
   for (std::size_t i = 0; i < kSize; ++i) {
     const std::size_t at = i * kLanes;
-    machine.first_point()[i] =
-        PointTraits<FloatInterval>::place({coordinate(boxes, 0, at), coordinate(boxes, 1, at), coordinate(boxes, 2, at)});
+    machine.first_point()[i] = PointTraits<FloatInterval>::place(
+        {coordinate(boxes, 0, at), coordinate(boxes, 1, at), coordinate(boxes, 2, at)});
   }
   machine.interpret();
   for (std::size_t i = 0; i < kSize; ++i) {

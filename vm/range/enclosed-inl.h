@@ -1,5 +1,5 @@
-// The interpreter over boxes, Machine<FloatInterval>: opcode functions with a separate form for FloatInterval, the entries of
-// the point stack, and the observer of choices.
+// The interpreter over boxes, Machine<FloatInterval>: opcode functions with a separate form for FloatInterval, the
+// entries of the point stack, and the observer of choices.
 #if defined(FATHOM_VM_ENCLOSED_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_ENCLOSED_INL
 #undef FATHOM_VM_ENCLOSED_INL
@@ -138,7 +138,8 @@ struct PointTraits<FloatInterval> {
   }
 
   template <class Op, int Count>
-  static HWY_INLINE FloatInterval shape(const Place& p, bool, const Batch* by, const Batch* k, const std::uint32_t* w) {
+  static HWY_INLINE FloatInterval shape(const Place& p, bool, const Batch* by, const Batch* k,
+                                        const std::uint32_t* w) {
     if constexpr (!has(Op::kOpcode, Fact::Ball)) {
       return formula<Op>(p, by, k, w);
     } else {
@@ -161,13 +162,13 @@ struct PointTraits<FloatInterval> {
   }
   template <class Op>
   static HWY_INLINE FloatInterval formula(const Vec3<FloatInterval>& box, const Batch* by, const Batch* k,
-                                      const std::uint32_t* w) {
+                                          const std::uint32_t* w) {
     return Op::apply(TranslateOp::apply(box, by), k, w);
   }
   // formula() as a function of its own, for the few boxes that are unbounded or beyond kBallReach.
   template <class Op>
   static HWY_NOINLINE FloatInterval formula_apart(const Vec3<FloatInterval>& box, const Batch* by, const Batch* k,
-                                              const std::uint32_t* w) {
+                                                  const std::uint32_t* w) {
     return formula<Op>(box, by, k, w);
   }
 

@@ -140,6 +140,8 @@ RecordedFunction record_outline(Opcode opcode, std::span<const double> groups) {
   return HWY_NAMESPACE::record_function(opcode, groups);
 }
 
-RecordedFunction record(Operation operation, bool doubles) { return HWY_NAMESPACE::record_function(operation, doubles); }
+RecordedFunction record(Operation operation, bool doubles) {
+  return HWY_NAMESPACE::record_function(operation, doubles);
+}
 
 }  // namespace fathom::vm

@@ -157,7 +157,8 @@ void warn_of_shutter(const syntax::Record& record, const Camera& camera, const S
 }  // namespace
 
 std::optional<ElaboratedScene> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions, const Limits& limits, std::optional<Scope> read) {
+                                         const Definitions& definitions, const Limits& limits,
+                                         std::optional<Scope> read) {
   const auto* record = std::get_if<syntax::Record>(&file.root.data);
   if (record == nullptr) {
     diagnostics.error(

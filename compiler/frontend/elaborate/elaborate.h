@@ -26,7 +26,7 @@ struct ElaboratedScene : SceneTables {
 // the scene's parameters. `parameters` are the resulting parameters, if the front end already evaluated the file with
 // them.
 std::optional<ElaboratedScene> elaborate(const syntax::File& file, Diagnostics& diagnostics,
-                                    const Definitions& definitions = {}, const Limits& limits = {},
-                                    std::optional<Scope> parameters = std::nullopt);
+                                         const Definitions& definitions = {}, const Limits& limits = {},
+                                         std::optional<Scope> parameters = std::nullopt);
 
 }  // namespace fathom::compiler

@@ -1,5 +1,6 @@
 // Readers for light sources that are not solids: lights and the background.
-// Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp, area_lights_test.cpp, tests/golden/diagnostics (E0309, E0310)
+// Tested by: tests/compiler/frontend/elaborate/elaborate_test.cpp, area_lights_test.cpp, tests/golden/diagnostics
+// (E0309, E0310)
 #pragma once
 
 #include <vector>

@@ -84,8 +84,8 @@ JsonComments comments_of_text(const Source& source, const syntax::File& file) {
   return comments;
 }
 
-std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
-                                                 const ImportedFiles& files) {
+std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits,
+                                                         Diagnostics& diagnostics, const ImportedFiles& files) {
   std::optional<ReadText> made = read(source, files, {}, limits, true, diagnostics);
   if (!made || diagnostics.has_errors()) return std::nullopt;
   return SceneWithFormulas{std::move(made->file), std::move(made->evaluated.frozen)};

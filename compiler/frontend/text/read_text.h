@@ -49,7 +49,7 @@ struct SceneWithFormulas {
 };
 
 // Reads the same scene as a JSON file that keeps the parameters.
-std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits, Diagnostics& diagnostics,
-                                                 const ImportedFiles& files = {});
+std::optional<SceneWithFormulas> read_text_with_formulas(Source& source, const Limits& limits,
+                                                         Diagnostics& diagnostics, const ImportedFiles& files = {});
 
 }  // namespace fathom::compiler

@@ -33,8 +33,7 @@ OptionResult read_definition(std::string_view text, std::pair<std::string, doubl
 OptionResult read_limit(std::string_view text, compiler::Limits& limits) {
   std::pair<std::string, double> given;
   if (OptionResult error = read_definition(text, given)) {
-    if (text.find('=') == std::string_view::npos || text.starts_with('='))
-      error->help = "write it as nodes=2000000";
+    if (text.find('=') == std::string_view::npos || text.starts_with('=')) error->help = "write it as nodes=2000000";
     return error;
   }
   const auto& [name, value] = given;
@@ -44,7 +43,7 @@ OptionResult read_limit(std::string_view text, compiler::Limits& limits) {
     for (const compiler::LimitRow& known : compiler::kLimits) names.push_back(known.name);
     const std::string_view near = compiler::nearest(name, names);
     return OptionError{fmt::format("there is no limit `{}`", name),
-                     near.empty() ? "`fathom help limits` lists them" : fmt::format("did you mean `{}`?", near)};
+                       near.empty() ? "`fathom help limits` lists them" : fmt::format("did you mean `{}`?", near)};
   }
   const bool whole = value == std::floor(value) || row->value == &compiler::Limits::coordinate;
   if (!(value >= 1 && value <= row->largest && whole)) {

@@ -19,7 +19,7 @@ std::variant<std::string, ReadError> read_all(std::istream& in, const compiler::
     const auto size = static_cast<double>(text.size());
     if (size > limits.file_size) {
       return ReadError{fmt::format("it has more than {:.15g} bytes, as many as are read", limits.file_size),
-                        compiler::raise(&compiler::Limits::file_size, 2 * limits.file_size), kBadScene};
+                       compiler::raise(&compiler::Limits::file_size, 2 * limits.file_size), kBadScene};
     }
   }
   if (in.bad()) return ReadError{std::strerror(errno)};
@@ -29,7 +29,7 @@ std::variant<std::string, ReadError> read_all(std::istream& in, const compiler::
 }  // namespace
 
 std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
-                                                const Streams& streams) {
+                                               const Streams& streams) {
   if (path == "-") return read_all(streams.in, limits);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {

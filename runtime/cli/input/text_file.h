@@ -18,7 +18,7 @@ struct ReadError {
   ExitCode code = kIo;
 };
 std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
-                                                const Streams& streams);
+                                               const Streams& streams);
 ExitCode fail(const Streams& streams, const std::string& path, const ReadError& read_error);
 
 // Name of the file for messages: quoted() within a sentence, source_name() before a line number.

@@ -18,14 +18,13 @@ OptionResult read_frames(std::string_view text, FrameOptions& options) {
   if (options.all) return std::nullopt;
   const auto wrong = [&] {
     return OptionError{fmt::format("`{}` are no frames", text),
-                     "write 7, 0:48 or 0:48:2, the second number not among them and the third the step; or all"};
+                       "write 7, 0:48 or 0:48:2, the second number not among them and the third the step; or all"};
   };
   std::int64_t parts[3] = {0, 0, 1};
   std::size_t count = 0;
   for (std::string_view rest = text;; ++count) {
     const std::size_t end = std::min(rest.find(':'), rest.size());
-    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMaxFrames, parts[count]))
-      return wrong();
+    if (count == 3 || read_whole(rest.substr(0, end), count == 2, compiler::kMaxFrames, parts[count])) return wrong();
     if (end == rest.size()) break;
     rest.remove_prefix(end + 1);
   }
@@ -43,7 +42,7 @@ OptionResult read_fps(std::string_view text, double& fps) {
   const double value = number && divisor ? *number / *divisor : 0;
   if (!(value >= compiler::kMinFps && value <= compiler::kMaxFps)) {
     return OptionError{fmt::format("`{}` is not a number from {} to {}", text, compiler::kMinFps, compiler::kMaxFps),
-                     "frames a second, as 24, 23.976 or 30000/1001"};
+                       "frames a second, as 24, 23.976 or 30000/1001"};
   }
   fps = value;
   return std::nullopt;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMinColumns = 40, kUsualColumns = 80, kMaxColumns = 120;
 constexpr int kDocColumn = 30;    // column at which an option's description begins
-constexpr int kMinDoc = 30;     // with fewer columns for it, the description gets lines of its own
+constexpr int kMinDoc = 30;       // with fewer columns for it, the description gets lines of its own
 constexpr int kNarrowIndent = 6;  // indentation of such a description
 
 // Returns the width in code points.

@@ -33,7 +33,7 @@ OptionResult read_output(std::string_view text, Output& output) {
   output.format = output.standard() ? &runtime::kImageFormats.front() : runtime::image_format_of(output.path);
   if (output.format != nullptr || text.ends_with(kFilmEnding)) return std::nullopt;
   return OptionError{fmt::format("`{}` does not end in a picture format's name", text),
-                   fmt::format("valid endings: {}, {}", runtime::image_endings(), kFilmEnding)};
+                     fmt::format("valid endings: {}, {}", runtime::image_endings(), kFilmEnding)};
 }
 
 OptionResult read_display_output(std::string_view text, Output& output) {
@@ -58,7 +58,7 @@ OptionResult read_map_name(std::string_view text, std::string& path) {
   const runtime::ImageFormatInfo* format = runtime::image_format_of(path);
   if ((format && format->for_display) || runtime::is_float_map(path)) return std::nullopt;
   return OptionError{fmt::format("`{}` does not end in the name of a format for maps", text),
-                   fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
+                     fmt::format("valid endings: {} for colours, .pfm for numbers", runtime::image_endings(true))};
 }
 
 std::string_view ending_of(const Output& output) {
@@ -154,7 +154,8 @@ std::optional<std::string> write_text(const std::string& text, const std::string
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
-ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output, const Streams& streams) {
+ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output,
+                           const Streams& streams) {
   if (!output) {
     streams.out << text;
     return kDone;
@@ -165,7 +166,7 @@ ExitCode write_text_output(const std::string& text, const std::optional<std::str
 }
 
 std::optional<ExitCode> check_image_size(double width, double height, const compiler::Limits& limits,
-                                           const Streams& streams) {
+                                         const Streams& streams) {
   const double side = std::max(width, height), pixels = width * height;
   if (side <= limits.image_side && pixels <= limits.pixels) return std::nullopt;
   const bool long_side = side > limits.image_side;

@@ -76,7 +76,7 @@ ExitCode write_text_output(const std::string& text, const std::optional<std::str
 
 // Prints a message and returns an exit code if an image of this size exceeds the limits.
 std::optional<ExitCode> check_image_size(double width, double height, const compiler::Limits& limits,
-                                           const Streams& streams);
+                                         const Streams& streams);
 
 // Prints a message and returns an exit code if an output file is known in advance not to be writable, or if it would
 // overwrite the file `read` or another output.

@@ -130,7 +130,7 @@ std::variant<std::vector<UnitRange>, ExitCode> units_of(const UnitOptions& optio
 
 OptionResult read_units(std::string_view text, std::vector<UnitRange>& ranges) {
   const OptionError wrong{fmt::format("`{}` are no units", text),
-                        "write K:L, the second not among them, or 3,7,10-19, the second among them"};
+                          "write K:L, the second not among them, or 3,7,10-19, the second among them"};
   for (std::string_view rest = text;;) {
     const std::size_t end = std::min(rest.find(','), rest.size());
     const std::string_view part = rest.substr(0, end);

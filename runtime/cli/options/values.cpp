@@ -82,15 +82,16 @@ OptionResult read_angle(std::string_view text, double& radians) {
   const bool degrees = cut_suffix(digits, "deg");
   const bool unit = degrees || cut_suffix(digits, "rad");
   const auto number = to_number(digits);
-  if (!number) return option_error(fmt::format("`{}` is not an angle", text), "write 0.785 (radians), 0.785rad or 45deg");
+  if (!number)
+    return option_error(fmt::format("`{}` is not an angle", text), "write 0.785 (radians), 0.785rad or 45deg");
   const double angle = degrees ? *number * std::numbers::pi / 180 : *number;
   if (!unit && angle > std::numbers::pi && *number < 180) {
     return option_error(fmt::format("{} radians is more than half a turn", text),
-                    fmt::format("a number without a unit is in radians; did you mean `{}deg`?", text));
+                        fmt::format("a number without a unit is in radians; did you mean `{}deg`?", text));
   }
   if (angle <= 0 || angle >= std::numbers::pi) {
     return option_error(fmt::format("`{}` is not between 0 and 180 degrees", text),
-                    unit ? "" : "a number without a unit is in radians; write for example 45deg");
+                        unit ? "" : "a number without a unit is in radians; write for example 45deg");
   }
   radians = angle;
   return std::nullopt;
@@ -107,7 +108,7 @@ OptionResult read_size(std::string_view text, PixelSize& size) {
     }
   }
   return option_error(fmt::format("`{}` is not a size in pixels, each side from 1 to {}", text, compiler::kMaxSide),
-                  "write it as 1920x1080");
+                      "write it as 1920x1080");
 }
 
 OptionResult read_point(std::string_view text, glm::dvec3& point) {
@@ -124,7 +125,7 @@ OptionResult read_box(std::string_view text, PointBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
     if (read.lo[axis] > read.hi[axis]) {
       return option_error(fmt::format("`{}`: the first corner's {} is above the second's", text, "xyz"[axis]),
-                      "give the corner with the smaller coordinates first");
+                          "give the corner with the smaller coordinates first");
     }
   }
   box = read;
@@ -134,8 +135,9 @@ OptionResult read_box(std::string_view text, PointBox& box) {
 OptionResult read_rectangle(std::string_view text, Rectangle& rectangle) {
   const auto n = to_numbers(text, 4, false);
   if (!n || !((*n)[0] < (*n)[2]) || !((*n)[1] < (*n)[3])) {
-    return option_error(fmt::format("`{}` is not a rectangle", text),
-                    n ? "give the corner with the smaller coordinates first" : "write its two corners: -1,-1,1,1");
+    return option_error(
+        fmt::format("`{}` is not a rectangle", text),
+        n ? "give the corner with the smaller coordinates first" : "write its two corners: -1,-1,1,1");
   }
   rectangle = {{(*n)[0], (*n)[1]}, {(*n)[2], (*n)[3]}};
   return std::nullopt;
@@ -144,7 +146,7 @@ OptionResult read_rectangle(std::string_view text, Rectangle& rectangle) {
 OptionResult read_crop(std::string_view text, CropSides& crop) {
   const auto wrong = [&] {
     return option_error(fmt::format("`{}` is not a part of a picture", text),
-                    "write its two corners in pixels or percent: 0,0,640,360 or 25%,25%,75%,75%");
+                        "write its two corners in pixels or percent: 0,0,640,360 or 25%,25%,75%,75%");
   };
   CropSides read;
   CropSides::Side* sides[] = {&read.x0, &read.y0, &read.x1, &read.y1};
@@ -237,7 +239,7 @@ Setter one_of(std::vector<std::string_view> words, std::function<void(int)> take
     }
     const std::string_view near = compiler::nearest(text, words);
     return option_error(fmt::format("`{}` is not one of {}", text, fmt::join(words, ", ")),
-                    near.empty() ? "" : fmt::format("did you mean `{}`?", near));
+                        near.empty() ? "" : fmt::format("did you mean `{}`?", near));
   };
   return {set, std::move(all)};
 }

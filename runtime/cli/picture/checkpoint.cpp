@@ -76,11 +76,12 @@ std::optional<ExitCode> Checkpoint::resume(const runtime::FilmHeader& header, co
 }
 
 std::optional<ExitCode> Checkpoint::start_new(const runtime::FilmHeader& header, const runtime::Settings& settings,
-                                                 const Streams& streams) {
+                                              const Streams& streams) {
   known_ = runtime::stamp_of(path_);
   if (!known_) return std::nullopt;
   const auto head = runtime::read_film_header(path_, limits_);
-  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&head)) return check_replaceable(*read_error, streams);
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&head))
+    return check_replaceable(*read_error, streams);
   std::vector<std::string> problems = differences(std::get<runtime::FilmFile>(head), header, settings);
   if (!problems.empty()) {
     if (named_) {
@@ -91,7 +92,8 @@ std::optional<ExitCode> Checkpoint::start_new(const runtime::FilmHeader& header,
     return std::nullopt;
   }
   const auto whole = runtime::read_film(path_, limits_);
-  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&whole)) return check_replaceable(*read_error, streams);
+  if (const auto* read_error = std::get_if<runtime::FilmReadError>(&whole))
+    return check_replaceable(*read_error, streams);
   const runtime::PartialRender& there = std::get<runtime::FilmFile>(whole).render;
   if (!runtime::can_resume(there, settings)) {
     return check_replaceable({fmt::format(kNoSense, path_), false, false}, streams);
@@ -121,8 +123,8 @@ std::optional<ExitCode> Checkpoint::check_path(const Streams& streams) const {
   return std::nullopt;
 }
 
-void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOptions::SnapshotReader& snapshot, double seconds,
-                      const Streams& streams) {
+void Checkpoint::tick(const runtime::FilmHeader& header, const runtime::RenderOptions::SnapshotReader& snapshot,
+                      double seconds, const Streams& streams) {
   if (due_ == 0) due_ = seconds + interval_;
   if (seconds < due_) return;
   using Clock = std::chrono::steady_clock;

@@ -38,7 +38,7 @@ class Checkpoint {
   // For a render without --resume. Prints a message and returns an exit code if the existing file could be resumed or
   // is not a film, or if its name was given on the command line. Prints a note if the file will be replaced.
   std::optional<ExitCode> start_new(const runtime::FilmHeader& header, const runtime::Settings& settings,
-                                       const Streams& streams);
+                                    const Streams& streams);
   // Prints a message and returns an exit code if the path is known in advance not to be writable.
   std::optional<ExitCode> check_path(const Streams& streams) const;
 
@@ -70,7 +70,7 @@ class Checkpoint {
   const runtime::ReadLimits limits_;         // for reading an existing file
   double due_ = 0;                           // seconds since the render began; 0: not set yet
   std::optional<runtime::FileStamp> known_;  // the file as this run found it or wrote it
-  bool is_own_ = false;                        // the known file is a state of this render
+  bool is_own_ = false;                      // the known file is a state of this render
   bool warned_ = false;
   std::optional<std::string> problem_;
   int written_ = 0;

@@ -104,8 +104,8 @@ std::string overflow_text(std::string_view what) {
 }
 
 std::optional<std::string> write_image_files(const ImageFiles& pictures, const runtime::FilmHeader& header,
-                                          const runtime::PartialRender& render, std::optional<double> seconds,
-                                          std::vector<std::string>& lines, const Streams& streams) {
+                                             const runtime::PartialRender& render, std::optional<double> seconds,
+                                             std::vector<std::string>& lines, const Streams& streams) {
   for (const Output& output : pictures.outputs) {
     if (auto problem = write_output(pictures, output, header, render, seconds, lines, streams)) return problem;
   }

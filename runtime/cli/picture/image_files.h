@@ -34,7 +34,7 @@ std::string overflow_text(std::string_view what);
 // Writes all files and appends a line for each to `lines`. Returns the first problem, after which no further file is
 // written. `seconds` is the render time, for formats that store it.
 std::optional<std::string> write_image_files(const ImageFiles& pictures, const runtime::FilmHeader& header,
-                                          const runtime::PartialRender& render, std::optional<double> seconds,
-                                          std::vector<std::string>& lines, const Streams& streams);
+                                             const runtime::PartialRender& render, std::optional<double> seconds,
+                                             std::vector<std::string>& lines, const Streams& streams);
 
 }  // namespace fathom::cli

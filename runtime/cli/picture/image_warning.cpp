@@ -65,7 +65,8 @@ struct Summary {
 Summary summarize(const compiler::CompiledScene& scene, const runtime::Film& film) {
   Summary summary;
   const runtime::PixelRect area = film.area();
-  const runtime::DisplayImage shown(runtime::layer_of(film, runtime::Layer::Beauty), {scene.film.exposure, scene.film.tone});
+  const runtime::DisplayImage shown(runtime::layer_of(film, runtime::Layer::Beauty),
+                                    {scene.film.exposure, scene.film.tone});
   std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(film.width()));
   for (int y = area.y0; y < area.y1; ++y) {
     shown.row(y - area.y0, std::span<std::uint8_t>(row));
@@ -104,8 +105,7 @@ void warn_of_empty_view(const compiler::CompiledScene& scene, compiler::Diagnost
                       {kFrameRemedy});
 }
 
-std::optional<std::string> image_warning(const compiler::CompiledScene& scene,
-                                           const runtime::RenderResult& result) {
+std::optional<std::string> image_warning(const compiler::CompiledScene& scene, const runtime::RenderResult& result) {
   if (result.film.area().pixels() < 2) return std::nullopt;
   const Summary seen = summarize(scene, result.film);
   if (!seen.hit) {

@@ -25,8 +25,8 @@ std::optional<ExitCode> read_background(const compiler::Background& background, 
   if (!cache.background || cache.background_file != file) {
     auto image = runtime::read_environment(file, read_limits(arguments.limits));
     if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image)) {
-      return fail_about(arguments, read_error->missing ? kIo : kBadScene, "the scene's background: " + read_error->problem,
-                        {}, streams);
+      return fail_about(arguments, read_error->missing ? kIo : kBadScene,
+                        "the scene's background: " + read_error->problem, {}, streams);
     }
     cache.background_file = file;
     cache.background =
@@ -54,15 +54,16 @@ std::optional<ExitCode> check_motion(const RenderRequest& request, const compile
   }
   if (!blurs) return std::nullopt;
   if (!runtime::resolve(scene, request.options).noise_threshold) return std::nullopt;
-  return fail(streams, kUsage,
-              "a noise threshold does not go with a `shutter`: a pixel's samples are of moments one after the other, so "
-              "that fewer would leave out the last",
-              {request.options.noise_threshold ? "leave out --noise-threshold, or the camera's `shutter`"
-                                               : "add --uniform"});
+  return fail(
+      streams, kUsage,
+      "a noise threshold does not go with a `shutter`: a pixel's samples are of moments one after the other, so "
+      "that fewer would leave out the last",
+      {request.options.noise_threshold ? "leave out --noise-threshold, or the camera's `shutter`" : "add --uniform"});
 }
 
 // Compiles the picture's scene at another time.
-MaybeScene compile_moment(const PreparedRender& picture, const SceneInput& input, double time, const Streams& streams) {
+MaybeScene compile_moment(const PreparedRender& picture, const SceneInput& input, double time,
+                          const Streams& streams) {
   SceneArguments arguments = picture.request.scene;
   arguments.definitions.emplace_back(compiler::kTimeParameter, time);
   compiler::CompileOptions options;
@@ -82,8 +83,8 @@ MaybeScene compile_moment(const PreparedRender& picture, const SceneInput& input
 }
 
 // Compiles the scene at the moments of the open shutter. `seed` is the seed shared by all frames.
-std::optional<ExitCode> open_shutter(PreparedRender& picture, const SceneInput& input, double time, std::uint64_t seed,
-                                     const Streams& streams) {
+std::optional<ExitCode> open_shutter(PreparedRender& picture, const SceneInput& input, double time,
+                                     std::uint64_t seed, const Streams& streams) {
   RenderRequest& request = picture.request;
   const double open = picture.scene.camera.shutter / request.frames.fps.value_or(picture.scene.film.fps);
   const int frame = request.frame && !request.frames.fixed_noise ? request.frame->number : 0;
@@ -111,13 +112,15 @@ void say_what_is_always_so(const RenderRequest& request, const Streams& streams)
 }
 
 // Applies the command line's settings to the scene, and prepares everything else that the picture needs.
-std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& input, RenderCache& cache, const Streams& streams) {
+std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& input, RenderCache& cache,
+                                 const Streams& streams) {
   RenderRequest& request = picture.request;
   compiler::CompiledScene& scene = picture.scene;
   if (const auto code = override_scene(request, scene, streams)) return code;
   if (const auto code = check_memory(request, scene, streams)) return code;
   fit_regions(request, scene);
-  if (const auto code = read_background(scene.background, request.scene, cache, request.options, streams)) return code;
+  if (const auto code = read_background(scene.background, request.scene, cache, request.options, streams))
+    return code;
   request.options.region_store = cache.regions;
   const std::uint64_t seed = scene.settings.seed;
   if (request.frame && !request.frames.fixed_noise) {
@@ -132,8 +135,8 @@ std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& inpu
 }  // namespace
 
 std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,
-                                                                 const SceneInput& input, RenderCache& cache,
-                                                                 const Streams& streams) {
+                                                                       const SceneInput& input, RenderCache& cache,
+                                                                       const Streams& streams) {
   Verbosity verbosity(request.verbosity, streams);
   compiler::CompileOptions options = verbosity.watch_compiler();
   options.lint_picture = true;
@@ -143,8 +146,8 @@ std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const Ren
   MaybeScene compiled = compile_scene(input, request.scene, held.streams(), options);
   held.release_if_new(cache.messages);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
-  auto picture =
-      std::make_unique<PreparedRender>(PreparedRender{request, std::get<compiler::CompiledScene>(std::move(compiled)), {}});
+  auto picture = std::make_unique<PreparedRender>(
+      PreparedRender{request, std::get<compiler::CompiledScene>(std::move(compiled)), {}});
   if (const auto code = complete(*picture, input, cache, streams)) return *code;
   verbosity.describe(picture->scene, runtime::resolve(picture->scene, picture->request.options));
   if (!std::exchange(cache.begun, true)) say_what_is_always_so(request, streams);

@@ -31,7 +31,7 @@ struct RenderCache {
 
 // Returns the picture, or the exit code after a message.
 std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,
-                                                                 const SceneInput& input, RenderCache& cache,
-                                                                 const Streams& streams);
+                                                                       const SceneInput& input, RenderCache& cache,
+                                                                       const Streams& streams);
 
 }  // namespace fathom::cli

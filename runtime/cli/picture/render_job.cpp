@@ -10,8 +10,8 @@
 #include "runtime/cli/input/memory.h"
 #include "runtime/cli/picture/closing_lines.h"
 #include "runtime/cli/picture/cost_map.h"
-#include "runtime/cli/picture/invalid_rays.h"
 #include "runtime/cli/picture/image_warning.h"
+#include "runtime/cli/picture/invalid_rays.h"
 #include "runtime/cli/picture/render_identity.h"
 #include "runtime/denoise/denoise.h"
 
@@ -61,11 +61,12 @@ std::optional<Checkpoint> checkpoint_of(const RenderRequest& request) {
   const auto path = request.checkpoint ? request.checkpoint : default_checkpoint(request);
   if (!path) return std::nullopt;
   return std::optional<Checkpoint>(std::in_place, *path, request.checkpoint.has_value(),
-                                   request.checkpoint_interval.value_or(kCheckpointInterval), read_limits(request.scene.limits));
+                                   request.checkpoint_interval.value_or(kCheckpointInterval),
+                                   read_limits(request.scene.limits));
 }
 
 RenderJob::RenderJob(PreparedRender& picture, const Streams& streams, WatchState* watching,
-                       std::optional<Interruption>& interruption)
+                     std::optional<Interruption>& interruption)
     : request_(picture.request),
       scene_(picture.scene),
       streams_(streams),

@@ -10,9 +10,9 @@
 
 #include "runtime/base/file_watch.h"
 #include "runtime/cli/picture/checkpoint.h"
+#include "runtime/cli/picture/image_files.h"
 #include "runtime/cli/picture/interruption.h"
 #include "runtime/cli/picture/prepared_render.h"
-#include "runtime/cli/picture/image_files.h"
 #include "runtime/cli/picture/progress.h"
 #include "runtime/cli/request/render_request.h"
 #include "runtime/render.h"
@@ -32,7 +32,8 @@ std::optional<Checkpoint> checkpoint_of(const RenderRequest& request);
 
 class RenderJob {
  public:
-  RenderJob(PreparedRender& picture, const Streams& streams, WatchState* watching, std::optional<Interruption>& interruption);
+  RenderJob(PreparedRender& picture, const Streams& streams, WatchState* watching,
+            std::optional<Interruption>& interruption);
 
   const runtime::FilmHeader& header() const { return header_; }  // header of its film files
 

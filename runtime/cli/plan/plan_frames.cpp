@@ -11,8 +11,7 @@
 
 namespace fathom::cli {
 
-std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running,
-                                              const std::string& background) {
+std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running, const std::string& background) {
   auto parsed = parse_planned(plan_.arguments, running, streams_);
   if (const auto* code = std::get_if<ExitCode>(&parsed)) return *code;
   request_ = std::get<RenderRequest>(std::move(parsed));
@@ -21,7 +20,8 @@ std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running
   request_.frames.range = plan_.grid.frames;
   if (!background.empty()) {
     auto image = runtime::read_environment(background, read_limits(request_.scene.limits));
-    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image)) return fail(streams_, kIo, read_error->problem);
+    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image))
+      return fail(streams_, kIo, read_error->problem);
     cache_.background_file = plan_.background_name;
     cache_.background =
         std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));

@@ -10,7 +10,7 @@ constexpr double kUnitSeconds = 120, kMinUnitSeconds = 60, kMaxUnitSeconds = 300
 // So many that the machines wait only a small part of the time for the last unit.
 constexpr double kUnitsPerMachine = 30;
 constexpr double kStartsPerSecond = 200;  // units that a queue can start per second
-constexpr int kMinTile = 64;            // pixels per side
+constexpr int kMinTile = 64;              // pixels per side
 
 int edge(int length, int parts, int at) { return static_cast<int>(static_cast<std::int64_t>(length) * at / parts); }
 
@@ -41,8 +41,7 @@ double default_unit_seconds(double all_seconds, std::optional<int> machines) {
 void cut(PlanGrid& grid, bool tiles_given, double frame_seconds, double unit_seconds) {
   const double wanted = std::max(1.0, frame_seconds / unit_seconds);
   if (!tiles_given) {
-    const double max_columns = std::max(1, grid.width / kMinTile),
-                 max_rows = std::max(1, grid.height / kMinTile);
+    const double max_columns = std::max(1, grid.width / kMinTile), max_rows = std::max(1, grid.height / kMinTile);
     grid.columns =
         static_cast<int>(std::clamp(std::round(std::sqrt(wanted * grid.width / grid.height)), 1.0, max_columns));
     grid.rows = static_cast<int>(std::clamp(std::round(wanted / grid.columns), 1.0, max_rows));

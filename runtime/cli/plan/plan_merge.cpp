@@ -133,9 +133,10 @@ class PlanMerge {
         each * plan_.grid.width * plan_.grid.height + film * static_cast<double>(shape.area.pixels());
     const double allowed = allowed_memory(request_.limits);
     if (needed <= allowed) return std::nullopt;
-    return fail(streams_, kBadScene,
-                fmt::format("a frame would take {} of memory; {} are allowed", format_bytes(needed), format_bytes(allowed)),
-                {compiler::raise(&compiler::Limits::memory, needed)});
+    return fail(
+        streams_, kBadScene,
+        fmt::format("a frame would take {} of memory; {} are allowed", format_bytes(needed), format_bytes(allowed)),
+        {compiler::raise(&compiler::Limits::memory, needed)});
   }
 
   std::optional<ExitCode> write(int index, runtime::FilmHeader& header, runtime::PartialRender& sum) const {

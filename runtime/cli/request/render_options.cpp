@@ -30,7 +30,7 @@ void add_verbosity_options(Arguments& arguments, RenderRequest& request) {
 
 void add_profile_option(Arguments& arguments, RenderRequest& request) {
   arguments.flag("--profile",
-                 "Measure the time of each stage (march, resolve, normals, shading, film); print it with all counts",
+                 "Measure the time of each stage (march, certify, normals, shading, film); print it with all counts",
                  request.options.profile);
 }
 
@@ -110,7 +110,7 @@ OptionResult read_sample_range(std::string_view text, runtime::SampleRange& rang
   const std::size_t middle = text.find(':');
   const auto wrong = [&] {
     return OptionError{fmt::format("`{}` is not a range of samples", text),
-                     "write it as 0:32: the samples from the first number up to the second, which is not in it"};
+                       "write it as 0:32: the samples from the first number up to the second, which is not in it"};
   };
   if (middle == std::string_view::npos) return wrong();
   std::int64_t first = 0, last = 0;

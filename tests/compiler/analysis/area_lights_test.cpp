@@ -16,11 +16,13 @@ CompiledScene lit(const std::string& objects) {
   return test::compiled(R"({"version": 1, "materials": {"dull": {"type": "diffuse"},
       "glow": {"type": "emissive", "emission": [1, 2, 3]}, "dark": {"type": "emissive", "emission": [0, 0, 0]}},
       "objects": [)" + objects +
-                         "]}");
+                        "]}");
 }
 std::size_t area_lights_in(const std::string& objects) { return lit(objects).area_lights.size(); }
 
-glm::dvec3 place(const AreaLight& area_light, glm::dvec3 q) { return area_light.rotation * q + area_light.translation; }
+glm::dvec3 place(const AreaLight& area_light, glm::dvec3 q) {
+  return area_light.rotation * q + area_light.translation;
+}
 
 TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
   const CompiledScene scene = lit(R"(
@@ -30,7 +32,8 @@ TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
       {"type": "capsule", "radius": 1, "half_height": 2, "material": "glow", "scale": 0.5},
       {"type": "sphere", "radius": 9, "translate": [0, -10, 0], "material": "dull"})");
   REQUIRE(scene.area_lights.size() == 4);
-  const AreaLight &ball = scene.area_lights[0], &box = scene.area_lights[1], &disc = scene.area_lights[2], &pill = scene.area_lights[3];
+  const AreaLight &ball = scene.area_lights[0], &box = scene.area_lights[1], &disc = scene.area_lights[2],
+                  &pill = scene.area_lights[3];
   CHECK(ball.shape == AreaLight::Shape::Sphere);
   CHECK(ball.radius == Approx(1));
   CHECK(glm::length(ball.translation - glm::dvec3(1, 2, 3)) < 1e-12);
@@ -79,7 +82,8 @@ TEST_CASE("lamps: what is altered, cut, blended or dark is none", "[lamps]") {
                                R"({"type": "smooth_union", "k": 0.1, "of": [)", R"({"type": "xor", "of": [)"}) {
     CHECK(area_lights_in(combined + ball + R"(, {"type": "box", "half_size": [1, 1, 0.5]}]})") == 0);
   }
-  CHECK(area_lights_in(R"({"type": "union", "of": [)" + ball + R"(, {"type": "box", "half_size": [1, 1, 0.5]}]})") == 1);
+  CHECK(area_lights_in(R"({"type": "union", "of": [)" + ball + R"(, {"type": "box", "half_size": [1, 1, 0.5]}]})") ==
+        1);
 }
 
 TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]") {
@@ -90,8 +94,8 @@ TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]")
   CHECK(area_lights_in(twice + "," + twice) == 1);
   // The level pass divides steep operands of a union by their Lipschitz constants. The pass must not hide an area
   // light.
-  CHECK(area_lights_in(twice + R"(, {"type": "shear", "shift": [2, 0], "of": {"type": "box", "half_size": [1, 1, 1]}})") ==
-        1);
+  CHECK(area_lights_in(
+            twice + R"(, {"type": "shear", "shift": [2, 0], "of": {"type": "box", "half_size": [1, 1, 1]}})") == 1);
 }
 
 TEST_CASE("lamps: what light may pass is none", "[lamps]") {

@@ -14,10 +14,10 @@
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::origin_test {

@@ -13,8 +13,8 @@
 #include "compiler/artefact/programs.h"
 #include "tests/support/compiled.h"
 #include "tests/support/draw_small.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/sealed_file.h"
 #include "vm/interpret/evaluate.h"
 #include "vm/prune/def_use_graph.h"
@@ -141,8 +141,7 @@ TEST_CASE("two scenes have one digest only when they render alike", "[artefact]"
   const std::string ball = R"({"type": "sphere", "radius": 1})";
   const vm::Digest digest = compiler::scene_digest(test::compiled_objects(ball));
   CHECK(compiler::scene_digest(test::compiled_objects("  " + ball)) == digest);
-  CHECK_FALSE(compiler::scene_digest(test::compiled_objects(R"({"type": "sphere", "radius": 1.0000001})")) ==
-              digest);
+  CHECK_FALSE(compiler::scene_digest(test::compiled_objects(R"({"type": "sphere", "radius": 1.0000001})")) == digest);
   CHECK_FALSE(compiler::scene_digest(test::compiled(
                   R"({"version": 1, "camera": {"position": [0, 0, 6]}, "objects": [)" + ball + "]}")) == digest);
   CHECK_FALSE(compiler::scene_digest(

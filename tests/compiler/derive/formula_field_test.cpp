@@ -1,8 +1,6 @@
 // Formulas as fields: the bounds that the compiler proves for them, and the boxes of displaced nodes.
 #include "compiler/derive/formula_field.h"
 
-#include "compiler/derive/formula_bound.h"
-
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -10,11 +8,12 @@
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "compiler/derive/formula_bound.h"
 #include "compiler/frontend/read_scene.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::test::formula_field_test {
 namespace {

@@ -100,7 +100,8 @@ TEST_CASE("emitted C++ asks of a lane type what its head says", "[emit]") {
     count(scene_c::distance<F>, scene_c::distance<float>);
     count(hi::distance<F>, hi::distance<float>);
     const auto doubles = showcase::distance<pairs::Pair<double>>({p.x, q.x}, {p.y, q.y}, {p.z, q.z});
-    differing += doubles.first != showcase::distance(p.x, p.y, p.z) || doubles.second != showcase::distance(q.x, q.y, q.z);
+    differing +=
+        doubles.first != showcase::distance(p.x, p.y, p.z) || doubles.second != showcase::distance(q.x, q.y, q.z);
   }
   CHECK(differing == 0);
 }

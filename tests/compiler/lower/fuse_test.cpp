@@ -6,9 +6,9 @@
 #include <string>
 
 #include "compiler/lower/lower.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/interpret/formula.h"
 #include "vm/encoding/disassemble.h"
 #include "vm/interpret/evaluate.h"

@@ -4,8 +4,8 @@
 
 #include "compiler/compile.h"
 #include "compiler/shapes/print_graph.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/encoding/disassemble.h"
 
 namespace fathom::listing_test {

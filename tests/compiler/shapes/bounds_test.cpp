@@ -73,8 +73,8 @@ TEST_CASE("what is far away costs nothing here", "[bounds]") {
   CHECK(compiled_objects(
             R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
             .cancellation <= 2);
-  CHECK(compiled_objects(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})").cancellation <=
-        0.1);
+  CHECK(compiled_objects(R"({"type": "box", "half_size": [1000, 0.1, 1000], "translate": [0, -0.1, 0]})")
+            .cancellation <= 0.1);
 }
 
 // Regression: the smallest singular value was computed from squares and lost its digits next to a large one.

@@ -7,10 +7,10 @@
 
 #include "compiler/derive/formula_field.h"
 #include "compiler/shapes/bounds.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::domain_test {

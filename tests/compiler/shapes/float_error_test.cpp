@@ -10,9 +10,9 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/make_node.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::float_error_test {

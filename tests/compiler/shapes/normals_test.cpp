@@ -7,8 +7,8 @@
 #include <string>
 
 #include "tests/compiler/shapes/primitives.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::test::normals_test {
 namespace {

@@ -12,12 +12,12 @@
 #include "compiler/shapes/make_node.h"
 #include "compiler/shapes/node_table.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge_geometry.h"
 #include "tests/support/judge/judge_outlines.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::outlines_test {

@@ -11,11 +11,11 @@
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/brute_force.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::test::shapes_test {
 namespace {
@@ -28,7 +28,7 @@ constexpr double kUnit = 0x1p-24;  // rounding error of a float in [1,2)
 
 // Max errors of a kind: the machine's double and float evaluators against the judge.
 struct Errors {
-  double doubles = 0;    // double, relative to scale_of(p)
+  double doubles = 0;  // double, relative to scale_of(p)
   double narrow = 0;  // float, in units of 2^-24 scale_of(p)
   // Like `narrow`, at points within scale / 16 of the surface, where a marching step may end.
   double near = 0;
@@ -140,7 +140,8 @@ TEST_CASE("table of errors", "[.report]") {
   for_each_primitive([](const NodeSpec& row) {
     const Errors errors = measure(row.kind, 1000, 1000);
     std::printf("%-17s double %9.3g   float %9.3g, near the surface %9.3g x 2^-24   (%s)\n",
-                std::string(row.name).c_str(), errors.doubles, errors.narrow, errors.near, errors.where_narrow.c_str());
+                std::string(row.name).c_str(), errors.doubles, errors.narrow, errors.near,
+                errors.where_narrow.c_str());
   });
 }
 

@@ -31,8 +31,8 @@ TEST_CASE("chart A: panels by class, polylines by method and precision, every ro
   CHECK(what_is_wrong(svg) == "");
   const auto words = texts(svg);
   const test::Text *camera = find_text(words, "camera rays, 50\u00a0000"),
-                    *bounce = find_text(words, "bounce rays, 50\u00a0000"),
-                    *grazing = find_text(words, "grazing rays, 50\u00a0000");
+                   *bounce = find_text(words, "bounce rays, 50\u00a0000"),
+                   *grazing = find_text(words, "grazing rays, 50\u00a0000");
   REQUIRE((camera && bounce && grazing));
   CHECK(camera->x < bounce->x);
   CHECK(bounce->x < grazing->x);

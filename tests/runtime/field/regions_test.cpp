@@ -18,9 +18,9 @@
 #include "runtime/path/surface.h"
 #include "runtime/render.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::regions_test {
@@ -173,7 +173,8 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
     const compiler::Box box = bounded ? known.box : compiler::Box::centred(glm::dvec3(3));
     if (!(known.lipschitz > 0) || box.hi.x - box.lo.x > 1e3) continue;
     const auto regions = Regions::build(
-        program, box, {.always = true, .room = bounded ? 0 : 3, .cancellation = static_cast<float>(known.cancellation)});
+        program, box,
+        {.always = true, .room = bounded ? 0 : 3, .cancellation = static_cast<float>(known.cancellation)});
     if (!regions) continue;
     ++built;
     for (const double reach : {1.05, 8.0}) {  // some points lie outside

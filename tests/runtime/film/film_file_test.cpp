@@ -181,7 +181,8 @@ TEST_CASE("film files: what a head becomes is counted before it is made") {
   std::string bytes = bytes_of(folder.file("a.film"));
   bytes[15] ^= 1;  // a byte of the head's length
   write_bytes(folder.file("a.film"), bytes);
-  CHECK(std::get<FilmReadError>(read_film_header(folder.file("a.film"))).problem.find("too early") != std::string::npos);
+  CHECK(std::get<FilmReadError>(read_film_header(folder.file("a.film"))).problem.find("too early") !=
+        std::string::npos);
 }
 
 TEST_CASE("film files: sums that take more memory than is allowed are not read") {

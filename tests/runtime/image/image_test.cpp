@@ -56,7 +56,7 @@ TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[ru
 TEST_CASE("image: what lies first along the ray", "[runtime]") {
   const Film film = three_pixels();
   const ByteImage albedo = layer_image(film, Layer::Albedo), normal = layer_image(film, Layer::Normal),
-                depth = layer_image(film, Layer::Depth);
+                  depth = layer_image(film, Layer::Depth);
   CHECK(albedo.rgb == std::vector<std::uint8_t>{255, 0, 188, 255, 0, 188, 0, 0, 0});
   CHECK(normal.rgb == std::vector<std::uint8_t>{128, 255, 128, 128, 255, 128, 0, 0, 0});
   CHECK(depth.rgb == std::vector<std::uint8_t>{255, 255, 255, 128, 128, 128, 0, 0, 0});

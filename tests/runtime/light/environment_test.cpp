@@ -9,9 +9,9 @@
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::environment_test {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/area_light_patches.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::light_shapes_test {
 namespace {
@@ -90,7 +90,8 @@ TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[li
   CHECK(sheet.pdf(front, sheet.centre() + 0.1 * sheet.normal()) > 0);
   CHECK(sheet.pdf(front, sheet.centre() - 0.1 * sheet.normal()) == 0);
   // Only hits find the sheet's rounded edge.
-  CHECK(sheet.pdf(front, sheet.centre() + 1.05 * sheet.area_light().rotation[0] + std::sqrt(0.0075) * sheet.normal()) == 0);
+  CHECK(sheet.pdf(front,
+                  sheet.centre() + 1.05 * sheet.area_light().rotation[0] + std::sqrt(0.0075) * sheet.normal()) == 0);
 }
 
 // Irradiance by sampling for radiance 1, with its standard error.

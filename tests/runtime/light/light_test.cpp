@@ -39,9 +39,9 @@ LightSample sample(const Lights& lights, const LightSampleContext& query, std::u
 }
 
 const LightSampleContext kQueries[] = {{{0, -4.9, 0}, {0, 1, 0}},
-                               {{0.5, 0.2, 0.4}, {0.6f, 0.8f, 0}},
-                               {{-2, 3, 2}, {0, 0, 1}, true},
-                               {{20, 3, 30}, {-0.6f, 0, -0.8f}}};
+                                       {{0.5, 0.2, 0.4}, {0.6f, 0.8f, 0}},
+                                       {{-2, 3, 2}, {0, 0, 1}, true},
+                                       {{20, 3, 30}, {-0.6f, 0, -0.8f}}};
 
 // Irradiance by sampling, as luminance, with its standard error. Ignores shadows.
 struct Mean {

@@ -7,8 +7,8 @@
 #include "runtime/render.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/light_scenes.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/support/white_furnace.h"
 
 namespace fathom::runtime::light_transport_test {
@@ -34,7 +34,8 @@ void expect(const LightScene& scene, RenderOptions options, double error) {
   const Estimate found = estimate(result.film);
   INFO(scene.name << ": " << found.mean << " +- " << found.sigma << ", in closed form " << scene.radiance);
   CHECK(std::abs(found.mean - scene.radiance) <= 4 * found.sigma + 2e-5 * scene.radiance);
-  CHECK(found.sigma <= error * std::sqrt(64.0 / test::scaled_cases(64)) * scene.radiance);  // fewer samples under sanitizers
+  CHECK(found.sigma <=
+        error * std::sqrt(64.0 / test::scaled_cases(64)) * scene.radiance);  // fewer samples under sanitizers
   CHECK(result.stats.march.invalid + result.stats.dropped_samples == 0);
 }
 
@@ -46,7 +47,8 @@ TEST_CASE("light: closed rooms, however paths end", "[render][light][released]")
       expect(test::closed_room(albedo), options, 2e-2);
     }
   }
-  expect(test::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, test::scaled_cases(64)), 2e-2);
+  expect(test::closed_room(0.5, R"("type": "box", "half_size": [1, 1, 1])"), square(24, test::scaled_cases(64)),
+         2e-2);
 }
 
 TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
@@ -64,9 +66,8 @@ TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][lig
 }
 
 TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render][light]") {
-  const LightScene scenes[] = {test::under_ball(0.5, 0, 2), test::under_ball(0.3, 1, 0.8),
-                               test::under_disc(0.5, 1), test::under_rectangle(0.4, 0.3, 0, 1),
-                               test::under_rectangle(0.5, 0.2, 0.3, 0.6)};
+  const LightScene scenes[] = {test::under_ball(0.5, 0, 2), test::under_ball(0.3, 1, 0.8), test::under_disc(0.5, 1),
+                               test::under_rectangle(0.4, 0.3, 0, 1), test::under_rectangle(0.5, 0.2, 0.3, 0.6)};
   for (const LightScene& scene : scenes) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
@@ -112,8 +113,8 @@ TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
   expect(test::veiled_drink(), options, 1e-3);
 }
 
-// Regression: shadow rays found light on a clear area light's surface although water filled the area light, and light through an
-// unbounded sea.
+// Regression: shadow rays found light on a clear area light's surface although water filled the area light, and light
+// through an unbounded sea.
 TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
   for (const LightScene& scene : {test::submerged_area_light(), test::bottomless_sea()}) {
     for (const LightSampling way : kEveryWay) {
@@ -175,7 +176,7 @@ TEST_CASE("light: random white materials return what they get", "[render][light]
 TEST_CASE("light: pass-through does not count as a bounce", "[render][light]") {
   LightScene scene =
       test::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
-                           R"("type": "box", "half_size": [3, 3, 0.1])");
+                          R"("type": "box", "half_size": [3, 3, 0.1])");
   scene.radiance = test::kGauze.passes;
   RenderOptions options = square(16, test::scaled_cases(256));
   options.max_depth = 0;

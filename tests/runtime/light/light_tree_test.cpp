@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/sample_bins.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::light_tree_test {
 namespace {
@@ -52,14 +52,14 @@ TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[light
       for (int i = 0; i < n; ++i) {
         const auto choice = tree.sample(query, Sampler(3, static_cast<std::uint32_t>(i), 0, 0).next());
         ++counts[choice ? choice->light : count];
-        if (choice)
-          worst = std::max(worst, std::abs(static_cast<double>(choice->pmf) / expected[choice->light] - 1));
+        if (choice) worst = std::max(worst, std::abs(static_cast<double>(choice->pmf) / expected[choice->light] - 1));
       }
       expected.push_back(std::max(0.0, 1 - sum));
       CAPTURE(count, query.position.x, sum);
       CHECK(sum < 1 + 1e-5);
       // A node's estimate can be above 0 when those of its leaves are all 0. Choosing this node gives no sample.
-      CHECK((count > LightTree::kFewLights ? sum > 0.9 : std::abs(sum - 1) < 1e-5 || tree.total_importance(query) == 0));
+      CHECK((count > LightTree::kFewLights ? sum > 0.9
+                                           : std::abs(sum - 1) < 1e-5 || tree.total_importance(query) == 0));
       CHECK(worst < 1e-4);
       CHECK(test::chi_square_deviation(counts, expected, n) < 5);
     }
@@ -74,7 +74,7 @@ TEST_CASE("light tree: what light can reach has a probability", "[lights]") {
     Sampler s(11, k, 0, 0);
     const auto spread = [&](float size) { return static_cast<double>((s.next() - 0.5f) * size); };
     const LightSampleContext query{{spread(30), spread(8), spread(30)},
-                           glm::normalize(glm::vec3(spread(1), spread(1), spread(1)))};
+                                   glm::normalize(glm::vec3(spread(1), spread(1), spread(1)))};
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
       const LightBounds& light = lights[i];
       const glm::dvec3 way = light.centre - query.position;

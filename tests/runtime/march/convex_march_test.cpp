@@ -11,8 +11,8 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/catalogue/departures.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::convex_march_test {
 
@@ -38,14 +38,14 @@ std::string scene(std::uint64_t seed) {
                        random.below(90));
   };
   static const char* kFusedMin[] = {"{0}",
-                                  "{{\"type\": \"subtraction\", \"of\": [{0}, {1}]}}",
-                                  "{{\"type\": \"intersection\", \"of\": [{0}, {1}]}}",
-                                  "{{\"type\": \"smooth_union\", \"k\": 0.2, \"of\": [{0}, {1}]}}",
-                                  "{{\"type\": \"smooth_subtraction\", \"k\": 0.1, \"of\": [{0}, {1}]}}",
-                                  "{{\"type\": \"round\", \"radius\": 0.05, \"of\": {0}}}",
-                                  "{{\"type\": \"onion\", \"thickness\": 0.03, \"of\": {0}}}",
-                                  "{{\"type\": \"mirror\", \"normal\": [1, 0, 0], \"of\": {0}}}",
-                                  "{{\"type\": \"union\", \"of\": [{0}, {1}], \"scale\": 0.7}}"};
+                                    "{{\"type\": \"subtraction\", \"of\": [{0}, {1}]}}",
+                                    "{{\"type\": \"intersection\", \"of\": [{0}, {1}]}}",
+                                    "{{\"type\": \"smooth_union\", \"k\": 0.2, \"of\": [{0}, {1}]}}",
+                                    "{{\"type\": \"smooth_subtraction\", \"k\": 0.1, \"of\": [{0}, {1}]}}",
+                                    "{{\"type\": \"round\", \"radius\": 0.05, \"of\": {0}}}",
+                                    "{{\"type\": \"onion\", \"thickness\": 0.03, \"of\": {0}}}",
+                                    "{{\"type\": \"mirror\", \"normal\": [1, 0, 0], \"of\": {0}}}",
+                                    "{{\"type\": \"union\", \"of\": [{0}, {1}], \"scale\": 0.7}}"};
   std::string objects = "{\"type\": \"plane\", \"normal\": [0, 1, 0], \"offset\": 0}";
   for (int i = 0; i < 8; ++i)
     objects += ",\n" + fmt::format(fmt::runtime(kFusedMin[random.below(9)]), shape(), shape());

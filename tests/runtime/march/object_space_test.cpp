@@ -93,7 +93,7 @@ object box([0.5, 0.4, 0.3]))~";
 TEST_CASE("object space: uses and copies have the same grain, each its own", "[object_space]") {
   const auto with_nodes = [](const std::string& node, const std::string& objects) {
     return test::compiled(R"({"version": 1, "materials": {)" + kOak + R"(}, "nodes": {"block": )" + node +
-                           R"(}, "objects": [)" + objects + "]}");
+                          R"(}, "objects": [)" + objects + "]}");
   };
   const std::string use = R"({"use": "block", )" + kPlaced + R"(}, {"use": "block", "translate": [-4, 0, 0]})";
   const CompiledScene inside = with_nodes("{" + kBox + R"(, "material": "oak"})", use);
@@ -184,24 +184,24 @@ CompiledScene room(const Spaces& spaces, const std::string& right = "right") {
   const std::string noise =
       R"({"type": "diffuse", "color": {"pattern": "noise", "a": [0.9, 0.4, 0.1], "b": [0.1, 0.2, 0.9], "scale": 0.3)";
   const auto of = [&](const char* space) { return noise + space + "}}"; };
-  return test::compiled(
-      R"({"version": 1, "materials": {"white": {"type": "diffuse"}, "ball": )" + of(spaces.ball) + R"(, "left": )" +
-      of(spaces.left) + R"(, "right": )" + of(spaces.right) + R"(, "lamp": {"type": "emissive", "emission":
+  return test::compiled(R"({"version": 1, "materials": {"white": {"type": "diffuse"}, "ball": )" + of(spaces.ball) +
+                        R"(, "left": )" + of(spaces.left) + R"(, "right": )" + of(spaces.right) +
+                        R"(, "lamp": {"type": "emissive", "emission":
       {"pattern": "gradient", "from": [-0.4, 0, 0], "to": [0.4, 0, 0], "a": [9, 1, 1], "b": [1, 1, 9])" +
-      spaces.lamp + R"(}}}, "camera": {"position": [0, 1.5, 5], "target": [0, 0.6, 0]}, "objects": [
+                        spaces.lamp + R"(}}}, "camera": {"position": [0, 1.5, 5], "target": [0, 0.6, 0]}, "objects": [
       {"type": "plane", "normal": [0, 1, 0], "material": "white"},
       {"type": "sphere", "radius": 0.6, "translate": [-1.2, 0.6, 0], "material": "ball"},
       {"type": "smooth_union", "k": 0.5, "of": [
         {"type": "sphere", "radius": 0.5, "translate": [0.5, 0.5, 0], "material": "left"},
         {"type": "sphere", "radius": 0.5, "translate": [1.25, 0.5, 0], "material": ")" +
-      right + R"("}]},
+                        right + R"("}]},
       {"type": "sphere", "radius": 0.4, "translate": [1, 1.75, 0.5], "material": "lamp"}]})");
 }
 
 const Spaces kOwn = {R"(, "space": "object")", R"(, "space": "object")", R"(, "space": "object")",
                      R"(, "space": "object")"};
 const Spaces kFusedTranslate = {R"(, "translate": [-1.2, 0.6, 0])", R"(, "translate": [0.5, 0.5, 0])",
-                       R"(, "translate": [1.25, 0.5, 0])", R"(, "translate": [1, 1.75, 0.5])"};
+                                R"(, "translate": [1.25, 0.5, 0])", R"(, "translate": [1, 1.75, 0.5])"};
 const Spaces kStill = {"", "", "", ""};
 
 // Returns the largest difference between the albedos of two images.
@@ -267,7 +267,7 @@ TEST_CASE("object space: regions, threads and tiles leave no trace", "[object_sp
   const CompiledScene scene =
       test::compiled(R"({"version": 1, "camera": {"position": [0, 3, 3], "target": [0, 0, -2]},
       "background": [1, 1, 1], "materials": {)" +
-                      kOak + R"(}, "objects": [)" + blocks(300) + "]}");
+                     kOak + R"(}, "objects": [)" + blocks(300) + "]}");
   CHECK(scene.surfaces[0].placed);
   RenderOptions options;
   options.width = 192, options.height = 128, options.spp = 2, options.threads = 1;

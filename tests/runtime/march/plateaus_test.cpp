@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "runtime/march/march.h"
 #include "runtime/march/certified_search.h"
+#include "runtime/march/march.h"
 #include "runtime/measure/ray_sets.h"
 #include "tests/runtime/scenes.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::plateaus_test {
 namespace {
@@ -180,7 +180,8 @@ class Truth {
 
 struct Tally {
   // differ: hits of only one of float and double, or hits more than 1e-3 apart.
-  int rays = 0, hits = 0, near_misses = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0, differ = 0;
+  int rays = 0, hits = 0, near_misses = 0, lost = 0, lost_in_double = 0, false_hits = 0, false_in_double = 0,
+      differ = 0;
   std::uint64_t evaluations = 0, searched = 0, most = 0;  // most: of a single ray
   std::string first, report;                              // the first wrong ray of a scene; those of all scenes
 
@@ -335,11 +336,11 @@ TEST_CASE("plateaus: as many scenes as are asked for", "[nightly][.]") {
   const char* seed = std::getenv("FATHOM_PLATEAU_SEED");
   Tally tally;
   try_scenes(seed ? std::strtoull(seed, nullptr, 10) : 1'000'000, scenes ? std::atoi(scenes) : 1000, 100, tally);
-  WARN(
-      fmt::format("{} rays, {} hits, {} near misses, {} lost, {} lost in double, {} false hits, {} false in double, {} "
-                  "differ, {} evaluations, {} searching, at most {} a ray",
-                  tally.rays, tally.hits, tally.near_misses, tally.lost, tally.lost_in_double, tally.false_hits,
-                  tally.false_in_double, tally.differ, tally.evaluations, tally.searched, tally.most));
+  WARN(fmt::format(
+      "{} rays, {} hits, {} near misses, {} lost, {} lost in double, {} false hits, {} false in double, {} "
+      "differ, {} evaluations, {} searching, at most {} a ray",
+      tally.rays, tally.hits, tally.near_misses, tally.lost, tally.lost_in_double, tally.false_hits,
+      tally.false_in_double, tally.differ, tally.evaluations, tally.searched, tally.most));
   INFO(tally.report);
   CHECK(tally.wrong() == 0);
   CHECK(tally.differ <= 1 + tally.rays / 100'000);

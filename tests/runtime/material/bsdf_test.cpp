@@ -10,8 +10,8 @@
 
 #include "runtime/sampling/sampler.h"
 #include "tests/support/chi_square.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/materials.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::bsdf_test {
 namespace {

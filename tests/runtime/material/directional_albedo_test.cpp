@@ -119,7 +119,8 @@ TEST_CASE("energy: what a coat takes too much is the mean of what it dims more",
   Sampler sampler(9, 0, 0, 0);
   for (const float alpha : {0.05f, 0.3f, 0.8f}) {
     const Ggx ggx(alpha);
-    const DirectionalAlbedo metal = coat_loss_of_conductor(alpha, coat), glass = coat_loss_of_reflection(alpha, 1.5f, coat);
+    const DirectionalAlbedo metal = coat_loss_of_conductor(alpha, coat),
+                            glass = coat_loss_of_reflection(alpha, 1.5f, coat);
     for (const float cos : {1.0f, 0.7f, 0.4f, 0.15f}) {
       const glm::vec3 wo(std::sqrt(1 - cos * cos), 0, cos);
       double of_metal = 0, of_glass = 0;

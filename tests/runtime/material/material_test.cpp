@@ -18,8 +18,8 @@ using Type = MaterialType;
 
 CompiledScene scene_of(const std::string& material, const std::string& translate = "[0, 0, 0]") {
   return test::compiled(R"({"version": 1, "params": {"k": 2}, "materials": {"m": )" + material +
-                         R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m", "translate": )" +
-                         translate + "}]}");
+                        R"(}, "objects": [{"type": "sphere", "radius": 1, "material": "m", "translate": )" +
+                        translate + "}]}");
 }
 
 // Returns the material of this text at a point of the scene.

@@ -57,7 +57,9 @@ TEST_CASE("microfacet: visible normals pass a chi-square test", "[runtime]") {
       setup.samples = 100000;
       setup.seed = static_cast<std::uint64_t>(++seed);
       const auto sample = [&](Sampler& s) { return ggx.sample_visible_normal(wo, s.next2()); };
-      const auto pdf = [&](glm::vec3 m) { return m.z > 0 ? static_cast<double>(ggx.visible_normal_pdf(wo, m)) : 0.0; };
+      const auto pdf = [&](glm::vec3 m) {
+        return m.z > 0 ? static_cast<double>(ggx.visible_normal_pdf(wo, m)) : 0.0;
+      };
       const test::ChiSquare result = test::chi_square(sample, pdf, setup);
       CAPTURE(alpha, cos, result.describe());
       CHECK(result.integral == Approx(1).epsilon(1e-3));

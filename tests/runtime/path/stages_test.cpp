@@ -45,7 +45,7 @@ TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[ren
   std::vector<PathState> paths(8);
   for (const std::size_t id : {1, 3, 5, 7}) paths[id].has_shadow_ray = true;
   std::vector<RayHit> ray_hits;
-  const Status statuses[] = {Status::Hit, Status::Hit,     Status::Miss,    Status::Miss,
+  const Status statuses[] = {Status::Hit, Status::Hit,      Status::Miss,    Status::Miss,
                              Status::Hit, Status::NearMiss, Status::Invalid, Status::Hit};
   for (std::uint32_t id = 0; id < 8; ++id) ray_hits.push_back({id, statuses[id]});
   for (const bool passes : {false, true}) {

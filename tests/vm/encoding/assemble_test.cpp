@@ -6,9 +6,9 @@
 #include <string>
 #include <variant>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/encoding/disassemble.h"
 #include "vm/encoding/escape.h"
 

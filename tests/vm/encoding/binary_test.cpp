@@ -7,9 +7,9 @@
 #include <variant>
 #include <vector>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::binary_test {

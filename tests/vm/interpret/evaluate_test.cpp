@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/number/float_bits.h"
 
 namespace fathom::test::evaluate_test {

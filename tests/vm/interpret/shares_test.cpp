@@ -13,7 +13,7 @@ compiler::CompiledScene blend_of(const std::string& combinator) {
   return test::compiled(R"({"version": 1,
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}, "c": {"type": "transparent"}},
       "objects": [{)" + combinator +
-                         R"(, "of": [{"type": "sphere", "radius": 1, "material": "a"},
+                        R"(, "of": [{"type": "sphere", "radius": 1, "material": "a"},
         {"type": "sphere", "radius": 1, "translate": [1.5, 0, 0], "material": "b"}]},
         {"type": "sphere", "radius": 1, "translate": [9, 0, 0], "material": "c"}]})");
 }

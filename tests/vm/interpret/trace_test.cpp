@@ -9,9 +9,9 @@
 #include <variant>
 #include <vector>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::test::trace_test {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "compiler/shapes/make_node.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/interpret/formula.h"
 
 namespace fathom::test::along_test {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/judge/judge_noise.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/range/boxes.h"
 #include "vm/number/noise_bounds.h"
 #include "vm/number/real.h"

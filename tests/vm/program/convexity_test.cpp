@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "compiler/shapes/bounds.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/number/float_bits.h"
 #include "vm/interpret/evaluate.h"
 #include "vm/program/opcode_rows.h"

@@ -1,5 +1,5 @@
-// ProgramTemplates: parts come out of a pool as they were put in. Many parts evaluated side by side have the same distances
-// as each alone.
+// ProgramTemplates: parts come out of a pool as they were put in. Many parts evaluated side by side have the same
+// distances as each alone.
 #include "vm/prune/program_template.h"
 
 #include <algorithm>
@@ -71,8 +71,8 @@ std::size_t wrong_distances(const Packed& packed, const std::vector<vm::PrunedPr
     jobs[packed.pool[packed.at[part]]].push_back({x, y, z, most, packed.at[part], i});
   }
   for (const auto& [program_template, some] : jobs) {
-    vm::evaluate_template(packed.program_templates[program_template], packed.constants, packed.pool.data(), some, together.data(),
-                          workspace);
+    vm::evaluate_template(packed.program_templates[program_template], packed.constants, packed.pool.data(), some,
+                          together.data(), workspace);
   }
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < count; ++i)

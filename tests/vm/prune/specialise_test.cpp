@@ -12,10 +12,10 @@
 
 #include "compiler/lower/fuse.h"
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
 #include "tests/vm/interpret/formula.h"
 #include "vm/range/slope.h"
 
@@ -322,7 +322,7 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
   std::vector<vm::LiveOperands> pairs(links.size()), all(links.size());
   vm::resolve_pairs(links.data(), ranges.data(), links.size(), pairs.data());
   vm::resolve_choices(links.data(), bounds.data(), links.size(), {vm::kNone, 0}, -kInfinity, kInfinity, 0,
-                     demanded.data(), all.data());
+                      demanded.data(), all.data());
   int cut = 0, wrong = 0;
   for (std::size_t i = 0; i < links.size(); ++i) {
     wrong += pairs[i].a != (all[i].a & 1) || pairs[i].b != (all[i].b & 1);

@@ -118,8 +118,9 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(e.settings.noise_threshold == 0.25);
   CHECK(e.background.bottom == glm::dvec3(0));
   CHECK(e.background.top == glm::dvec3(0.5, 0.7, 1));
-  const ElaboratedScene o = of_objects(R"({"type": "sphere", "radius": 1})",
-                                  R"(, "camera": {"type": "orthographic", "width": 7}, "background": [1, 2, 3])");
+  const ElaboratedScene o =
+      of_objects(R"({"type": "sphere", "radius": 1})",
+                 R"(, "camera": {"type": "orthographic", "width": 7}, "background": [1, 2, 3])");
   CHECK(o.camera.projection == Camera::Projection::Orthographic);
   CHECK(o.camera.width == 7);
   CHECK_FALSE(o.settings.noise_threshold);
@@ -180,7 +181,7 @@ TEST_CASE("materials: the inner one wins, and each object has surfaces of its ow
   const ElaboratedScene e = of_objects(R"({"name": "pair", "material": "red", "type": "union", "of": [
         {"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 2, "material": "blue"}]},
       {"use": "ball", "material": "red"}, {"use": "ball"})",
-                                  kRedBlue + R"(, "nodes": {"ball": {"type": "sphere", "radius": 3}})");
+                                       kRedBlue + R"(, "nodes": {"ball": {"type": "sphere", "radius": 3}})");
   CHECK(listing(e) ==
         "%0 = sphere radius=1\n"
         "%1 = sphere radius=2\n"
@@ -206,7 +207,7 @@ TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]
   const ElaboratedScene e = of_objects(R"({"type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "red"},
       {"type": "onion", "thickness": 1, "of": {"type": "sphere", "radius": 2, "material": "blue"}}]})",
-                                  kRedBlue);
+                                       kRedBlue);
   CHECK(listing(e) ==
         "%0 = sphere radius=1\n"
         "%1 = paint surface=0 %0\n"
@@ -217,7 +218,7 @@ TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]
   CHECK(surfaces(e) == "union:red union:blue ");
   const ElaboratedScene same = of_objects(R"({"material": "red", "type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "red"}, {"type": "sphere", "radius": 2}]})",
-                                     kRedBlue);
+                                          kRedBlue);
   CHECK(listing(same) == "%0 = sphere radius=1\n%1 = sphere radius=2\n%2 = union %0 %1\n%3 = paint surface=0 %2\n");
 }
 
@@ -230,8 +231,9 @@ TEST_CASE("paint lies outside the transform of its node", "[elaborate]") {
 
 TEST_CASE("names of objects are unique", "[elaborate]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
-  const ElaboratedScene e = of_objects(ball + "," + ball + R"(, {"name": "sphere 3", "type": "sphere", "radius": 1},)" +
-                                  ball + R"(, {"name": "sphere", "type": "sphere", "radius": 1})");
+  const ElaboratedScene e =
+      of_objects(ball + "," + ball + R"(, {"name": "sphere 3", "type": "sphere", "radius": 1},)" + ball +
+                 R"(, {"name": "sphere", "type": "sphere", "radius": 1})");
   CHECK(surfaces(e) == "sphere:default sphere 2:default sphere 3:default sphere 4:default sphere 5:default ");
 }
 
@@ -288,7 +290,8 @@ TEST_CASE("forty doublings take linear time and space", "[elaborate]") {
           R"(, "a{0}": {{"type": "union", "of": [{{"use": "a{1}"}}, {{"use": "a{1}", "translate": [{0}, 0, 0], "material": "blue"}}]}})",
           i, i - 1);
     }
-    const ElaboratedScene e = of_objects(R"({"use": "a40"}, {"use": "a40"})", kRedBlue + R"(, "nodes": {)" + nodes + "}");
+    const ElaboratedScene e =
+        of_objects(R"({"use": "a40"}, {"use": "a40"})", kRedBlue + R"(, "nodes": {)" + nodes + "}");
     CHECK(e.scene.graph.size() < 40 * 2 * 8);
   }
 }

@@ -11,8 +11,8 @@
 #include <random>
 
 #include "tests/support/compiled.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
+#include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::nested_nodes_test {

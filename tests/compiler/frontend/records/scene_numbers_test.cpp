@@ -131,7 +131,7 @@ TEST_CASE("formulas in lists of points, and what is no list of numbers", "[elabo
 
 TEST_CASE("no formula where no number is wanted", "[elaborate]") {
   const ElaboratedScene e = of_objects(R"({"name": "1 +", "type": "sphere", "radius": 1, "material": "2*r"})",
-                                  R"(, "materials": {"2*r": {"type": "diffuse"}}, "$schema": "1 +")");
+                                       R"(, "materials": {"2*r": {"type": "diffuse"}}, "$schema": "1 +")");
   CHECK(surfaces(e) == "1 +:2*r ");
 }
 

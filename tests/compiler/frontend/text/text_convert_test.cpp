@@ -11,10 +11,10 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/print.h"
 #include "compiler/frontend/text/read_text.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/golden.h"
 #include "tests/support/import_folder.h"
 #include "tests/support/random/random_document.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::text_convert_test {
 

@@ -7,8 +7,8 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/parse/lexer.h"
 #include "compiler/frontend/text/print.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/random/random_document.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::text_format_test {
 

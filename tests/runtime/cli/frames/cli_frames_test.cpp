@@ -3,8 +3,8 @@
 #include <string>
 
 #include "runtime/film/film_file.h"
-#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::cli_frames_test {
 namespace {
@@ -385,7 +385,8 @@ object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), f
   REQUIRE(turntable.code == 0);
   CHECK_THAT(turntable.err, Contains("regions built 1 time and kept 3 times"));
   CHECK_THAT(folder.read("stats-0000.json"), Contains("\"regions_reused\": 0,"));
-  CHECK_THAT(folder.read("stats-0003.json"), Contains("\"regions_reused\": 1,") && Contains("\"region_seconds\": 0,"));
+  CHECK_THAT(folder.read("stats-0003.json"),
+             Contains("\"regions_reused\": 1,") && Contains("\"region_seconds\": 0,"));
   REQUIRE(folder.run("render many.fathom --frames 3 -o alone.png -q").code == 0);
   CHECK(folder.read("alone-0003.png") == folder.read("a-0003.png"));
 }

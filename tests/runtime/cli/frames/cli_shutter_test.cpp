@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::cli_shutter_test {
 namespace {
@@ -73,7 +73,8 @@ TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace") {
 
 TEST_CASE("cli shutter: kill -9 and resume give the bits of a render that was not disturbed") {
   const Moving folder;
-  const std::string render = "fast.json --denoise --shutter-times 8 -q -s " + std::to_string(fathom::test::scaled_cases(1600));
+  const std::string render =
+      "fast.json --denoise --shutter-times 8 -q -s " + std::to_string(fathom::test::scaled_cases(1600));
   REQUIRE(folder.run("render " + render + " -o whole.exr").code == 0);
   const Result result =
       folder.run_script("for s in 0.05 0.1 0.15 0.2; do\n  timeout -s KILL $s \"$fathom\" render " + render +

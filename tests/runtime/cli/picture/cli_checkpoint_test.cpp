@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "tests/support/scaled_cases.h"
 #include "tests/support/program.h"
+#include "tests/support/scaled_cases.h"
 
 namespace fathom::cli_checkpoint_test {
 
