@@ -8,7 +8,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Returns the sample with its radiance scaled to at most `max` in cancellation. Filters may have negative weights.
+// Returns the sample with its radiance scaled to at most `max` in magnitude. Filters may have negative weights.
 PathSample clamped(PathSample sample, float max) {
   const float brightest = max_component(glm::abs(sample.radiance));
   if (brightest > max) sample.radiance *= max / brightest;

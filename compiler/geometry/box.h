@@ -37,7 +37,7 @@ inline bool Box::finite() const {
   }
   return true;
 }
-// Returns the largest cancellation of a coordinate.
+// Returns the largest magnitude of a coordinate.
 inline double largest_part(glm::dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 inline Box unite(const Box& a, const Box& b) { return {glm::min(a.lo, b.lo), glm::max(a.hi, b.hi)}; }
 inline Box intersect(const Box& a, const Box& b) { return {glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)}; }

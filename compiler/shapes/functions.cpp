@@ -47,7 +47,7 @@ NodeSpec function(Kind kind, std::string_view name, std::string_view doc, std::v
           .derive_facts = know_number};
 }
 
-// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the cancellation of the float error, 1
+// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the scale of the float error, 1
 // if the constant is proved.
 NodeFacts know_bounded(Params p, std::span<const NodeFacts>) {
   NodeFacts k;

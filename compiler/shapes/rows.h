@@ -55,7 +55,7 @@ std::vector<double> slanted_profile(double bottom, double top, double half_heigh
 // parameters, then the side's outward normal.
 std::vector<double> round_profile(Params params);
 
-// Returns the largest cancellation of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
+// Returns the largest magnitude of a coordinate in the box: infinite if the box has no end, 0 if it is empty.
 double largest_coordinate(const Box& box);
 // Returns the cancellation of an outline whose parts are evaluated from points as far away as its box reaches in the
 // plane.

@@ -8,13 +8,11 @@
 // Every part is reciprocal: f(wo,wi) = f(wi,wo), through an interface except for eta^2. No part gives more light than
 // it gets:
 // - The lost light of a rough interface comes back as a diffuse lobe, in proportion to the loss of each direction,
-// and
-//   for glass on both sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017;
+//   and for glass on both sides (Kulla and Conty, "Revisiting Physically Based Shading at Imageworks", 2017;
 //   directional_albedo.h).
 // - The diffuse base gets what the interface lets through, h = 1 - E: h(wo) h(wi) / average (Kelemen and
-// Szirmay-Kalos, "A
-//   Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001). With diffuse_roughness the
-//   divisor moves towards the greatest h, which may lose a few hundredths.
+//   Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001). With
+//   diffuse_roughness the divisor moves towards the greatest h, which may lose a few hundredths.
 // - Glossy parts under the coat are multiplied by min(t(wo), t(wi)), t = 1 - coat_weight E_coat. That is exact for
 //   mirrors.
 //

@@ -68,7 +68,7 @@ Filter::Filter(FilterKind kind, std::optional<double> width)
   weight_ = static_cast<float>(1 / (2 * cdf_[positive] - 1));
 }
 
-// Returns the |offset| below which the share of the cancellation lies, share in [0,1). The density is linear in a
+// Returns the |offset| below which the share of the magnitude lies, share in [0,1). The density is linear in a
 // cell, so the offset is the root of a quadratic.
 double Filter::invert_cdf(double share) const {
   std::size_t cell = cdf_guide_[static_cast<std::size_t>(share * kCells)];

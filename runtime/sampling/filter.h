@@ -1,6 +1,6 @@
 // Reconstruction filters, sampled: the filter decides where in the pixel's neighbourhood a sample goes.
 //
-// Every sample belongs to one pixel. Its place is drawn with the filter's cancellation as density, so all samples of
+// Every sample belongs to one pixel. Its place is drawn with the filter's magnitude as density, so all samples of
 // a filter without negative parts have the same weight. Ernst, Stamminger, Greiner, "Filter Importance Sampling",
 // 2006.
 //
@@ -45,10 +45,10 @@ class Filter {
   FilterKind kind_;
   double radius_;
   std::array<double, kCells + 1> magnitude_;  // at the cells' ends; linear between
-  std::array<double, kCells + 1> cdf_;        // [i] share of the cancellation before cell i
+  std::array<double, kCells + 1> cdf_;        // [i] share of the magnitude before cell i
   std::array<std::uint16_t, kCells> cdf_guide_;  // [k] cell in which the share k/kCells is reached
   double negative_from_ = 0;                  // |offset| from which on the filter is negative, pixels
-  float weight_ = 1;  // of a positive coordinate: the cancellation's integral over the filter's
+  float weight_ = 1;                          // of a positive coordinate: the magnitude's integral over the filter's
 };
 
 // Returns the filter's value at t radii from the centre, t in [0,1]; 1 is the end of the support.

@@ -220,7 +220,7 @@ template <class Outline>
 HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
   const Vec3<Slope> flat{p.x, p.y, constant<Slope>(0.0)};
   Slope d = distance_at(flat, polygon(Vec3<Interval>{p.x.v, p.y.v, p.z.v}, corners));
-  double scale = 1;  // cancellation of the corners, which the error bound in distance_at() does not include
+  double scale = 1;  // magnitude of the corners, which the error bound in distance_at() does not include
   for (std::size_t i = 0; i < corners.count(); ++i) {
     scale = std::max(scale, std::fabs(corners(i, 0)) + std::fabs(corners(i, 1)));
   }

@@ -164,29 +164,29 @@ std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants&
                                      std::vector<std::uint32_t>& pool) {
   const auto start = pool.size();
   const std::uint32_t number = remainder_of(part);
-  const Remainder& frame = remainders_[number];
+  const Remainder& remainder = remainders_[number];
   pool.resize(start + 2 + part.sources.size());
-  pool[start] = frame.program_template, pool[start + 1] = number;
+  pool[start] = remainder.program_template, pool[start + 1] = number;
   std::size_t at = 0;
   for (std::size_t i = 0; i < part.sources.size(); ++i, at += instruction_length(part.words[at])) {
     const std::uint32_t source = part.sources[i];
-    pool[start + 2 + frame.place[i]] = quads_of(part.words[at]) > 0 ? constants.row(source) : source;
+    pool[start + 2 + remainder.place[i]] = quads_of(part.words[at]) > 0 ? constants.row(source) : source;
   }
   return static_cast<std::uint32_t>(start);
 }
 
 void ProgramTemplates::unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool,
                               std::uint32_t at, PrunedProgram& out) const {
-  const Remainder& frame = remainders_[pool[at + 1]];
-  out.words = frame.words;
+  const Remainder& remainder = remainders_[pool[at + 1]];
+  out.words = remainder.words;
   out.doubles.assign(out.words.size(), 0);
   out.sources.clear();
-  out.locals = frame.locals, out.max_values = frame.max_values, out.max_points = frame.max_points;
-  out.choices = frame.choices, out.cost = frame.cost;
+  out.locals = remainder.locals, out.max_values = remainder.max_values, out.max_points = remainder.max_points;
+  out.choices = remainder.choices, out.cost = remainder.cost;
   const std::uint32_t* entry = pool + at + 2;
   const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   for (std::size_t word = 0, i = 0; word < out.words.size(); word += instruction_length(out.words[word]), ++i) {
-    const std::uint32_t held = entry[frame.place[i]];
+    const std::uint32_t held = entry[remainder.place[i]];
     const std::uint32_t source = quads_of(out.words[word]) > 0 ? constants.source(held) : held;
     out.sources.push_back(source);
     if (opcode_of(out.words[word]) == Opcode::Tag) out.words[word] = whole.words[source];
@@ -197,12 +197,12 @@ void ProgramTemplates::unpack(const Code& whole, const Constants& constants, con
 }
 
 void ProgramTemplates::renumber(const ProgramTemplates& others, std::uint32_t* pool, std::uint32_t at) {
-  const Remainder& frame = others.remainders_[pool[at + 1]];
-  wanted_.words = frame.words, wanted_.doubles = frame.doubles;
+  const Remainder& remainder = others.remainders_[pool[at + 1]];
+  wanted_.words = remainder.words, wanted_.doubles = remainder.doubles;
   std::uint32_t number = find(remainder_at_, remainders_, wanted_);
   if (number == kNone) {
-    Remainder copy = frame;
-    copy.program_template = number_of(ProgramTemplate(others.templates_[frame.program_template]));
+    Remainder copy = remainder;
+    copy.program_template = number_of(ProgramTemplate(others.templates_[remainder.program_template]));
     number = add(std::move(copy));
   }
   pool[at] = remainders_[number].program_template, pool[at + 1] = number;
@@ -220,38 +220,38 @@ std::uint32_t ProgramTemplates::remainder_of(const PrunedProgram& part) {
   if (!outlines) wanted.doubles.clear();
   if (const std::uint32_t known = find(remainder_at_, remainders_, wanted); known != kNone) return known;
 
-  Remainder frame = wanted;
-  frame.locals = part.locals, frame.max_values = part.max_values, frame.max_points = part.max_points;
-  frame.choices = part.choices, frame.cost = part.cost;
+  Remainder remainder = wanted;
+  remainder.locals = part.locals, remainder.max_values = part.max_values, remainder.max_points = part.max_points;
+  remainder.choices = part.choices, remainder.cost = part.cost;
   ProgramTemplate program_template{{}, {}, part.locals, part.max_values, part.max_points, part.choices, 0, {}};
-  frame.place.assign(part.sources.size(), kNone);
+  remainder.place.assign(part.sources.size(), kNone);
   std::uint32_t places = 0;
   for (const Step& step : distance_steps(part)) {
     append_instruction(part, step.word, step.at, program_template.words, program_template.doubles);
     ++program_template.instructions;
     if (quads_of(step.word) == 0) continue;
-    frame.place[step.instruction] = places++;
+    remainder.place[step.instruction] = places++;
     program_template.quads.push_back(static_cast<std::uint8_t>(quads_of(step.word)));
   }
-  for (std::uint32_t& place : frame.place) {
+  for (std::uint32_t& place : remainder.place) {
     if (place == kNone) place = places++;
   }
   if (!outlines) program_template.doubles.clear();
-  frame.program_template = number_of(std::move(program_template));
-  return add(std::move(frame));
+  remainder.program_template = number_of(std::move(program_template));
+  return add(std::move(remainder));
 }
 
-std::uint32_t ProgramTemplates::add(Remainder&& frame) {
+std::uint32_t ProgramTemplates::add(Remainder&& remainder) {
   const auto number = static_cast<std::uint32_t>(remainders_.size());
-  bytes_ += sizeof(frame) + bytes_of(frame) + frame.place.size() * sizeof(std::uint32_t);
-  remainder_at_.emplace(hash_of(frame.words), number);
-  remainders_.push_back(std::move(frame));
+  bytes_ += sizeof(remainder) + bytes_of(remainder) + remainder.place.size() * sizeof(std::uint32_t);
+  remainder_at_.emplace(hash_of(remainder.words), number);
+  remainders_.push_back(std::move(remainder));
   return number;
 }
 
 std::uint32_t ProgramTemplates::number_of(ProgramTemplate&& program_template) {
   if (const std::uint32_t known = find(template_at_, templates_, program_template); known != kNone) {
-    ProgramTemplate& other = templates_[known];  // shared by several frames, so its sizes are their maxima
+    ProgramTemplate& other = templates_[known];  // shared by several remainders, so its sizes are their maxima
     other.locals = std::max(other.locals, program_template.locals);
     other.max_values = std::max(other.max_values, program_template.max_values);
     other.max_points = std::max(other.max_points, program_template.max_points);

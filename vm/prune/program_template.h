@@ -1,4 +1,4 @@
-// ProgramTemplates: programs without their constants.
+// Program templates: programs without their constants.
 //
 // The interpreter runs one instruction for many points. If every cell of a scene has its own program
 // (runtime/field/regions.h), few points share a program. But programs pruned from one scene differ in little else
@@ -11,7 +11,8 @@
 //     templates.unpack(whole, constants, pool.data(), at, part);  // restores the part
 //
 // A template has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
-// become one instruction that evaluates a different shape in every lane. A part's frame holds the rest of the part.
+// become one instruction that evaluates a different shape in every lane. The rest of a pruned program is its
+// remainder.
 //
 // Tested by: tests/vm/prune/program_template_test.cpp
 #pragma once
@@ -85,16 +86,16 @@ struct ProgramTemplate {
   }
 };
 
-// ProgramTemplates and frames of many parts. A part in a pool consists of its template's number, its frame's number,
-// the rows of constants of the template's instructions that have constants, and the offsets in the whole program of
-// the part's other instructions.
+// Templates and remainders of many pruned programs. A part in a pool consists of its template's number, its
+// remainder's number, the rows of constants of the template's instructions that have constants, and the offsets in
+// the whole program of the part's other instructions.
 class ProgramTemplates {
  public:
   // Appends the part to the pool. Returns the index of its first entry.
   std::uint32_t pack(const PrunedProgram& part, const Constants& constants, std::vector<std::uint32_t>& pool);
   void unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool, std::uint32_t at,
               PrunedProgram& out) const;
-  // Renumbers a part that `others` packed, so that it refers to the templates and frames of this object.
+  // Renumbers a part that `others` packed, so that it refers to the templates and remainders of this object.
   void renumber(const ProgramTemplates& others, std::uint32_t* pool, std::uint32_t at);
 
   // Prefetches the constants of the part that evaluate_template() will read.
@@ -117,7 +118,7 @@ class ProgramTemplates {
   };
   using Index = std::unordered_multimap<std::uint64_t, std::uint32_t>;  // by hash of the words
   std::uint32_t remainder_of(const PrunedProgram& part);
-  std::uint32_t add(Remainder&& frame);
+  std::uint32_t add(Remainder&& remainder);
   std::uint32_t number_of(ProgramTemplate&& program_template);
 
   std::vector<ProgramTemplate> templates_;
@@ -133,7 +134,7 @@ struct alignas(32) TemplateJob {
   std::uint32_t at, point;  // index of the program in the pool; index of the result in `distance`
 };
 // Computes distance[job.point] = min(distance of the job's program at x, y, z, job.most). All programs have the
-// template `template`.
+// template `program_template`.
 void evaluate_template(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
                        std::span<const TemplateJob> jobs, float* distance, Workspace& workspace);
 

@@ -20,7 +20,7 @@ class FormulaBuilder {
   // Adds a call, folded to a constant if all arguments are constant and call_function() knows the function.
   FormulaId call(std::string_view function, std::span<const FormulaId> arguments, Span span);
 
-  // Adds a power. Whole exponents up to 64 in cancellation become squares and products, and 0.5 becomes a square
+  // Adds a power. Whole exponents up to 64 in magnitude become squares and products, and 0.5 becomes a square
   // root. Negative exponents of these become reciprocals.
   FormulaId power(FormulaId base, FormulaId exponent, Span span);
 

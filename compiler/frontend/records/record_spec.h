@@ -35,8 +35,8 @@ enum class ValueType {
 
 inline constexpr int kSceneVersion = 1;
 
-// Largest cancellation of a number. The machine computes in 32-bit floats, and the sum of three squares of this
-// cancellation is still below the largest float.
+// Largest magnitude of a number. The machine computes in 32-bit floats, and the sum of three squares of this
+// magnitude is still below the largest float.
 inline constexpr double kLargest = 1e18;
 
 // Allowed range of a number, or of each component of a vector: [least, most], or (least, most) if `open`.

@@ -90,7 +90,7 @@ OptionResult read_crop(std::string_view text, CropSides& crop);
 // Reads a positive duration in seconds from "90", "90s", "10m" or "1.5h".
 OptionResult read_duration(std::string_view text, double& seconds);
 
-// Reads an exposure in stops, at most kMaxExposure in cancellation.
+// Reads an exposure in stops, at most kMaxExposure in magnitude.
 OptionResult read_exposure(std::string_view text, double& stops);
 
 OptionResult read_finite(std::string_view text, double& number);

@@ -10,7 +10,7 @@ namespace fathom::test {
 // Returns a program of about `instructions` instructions.
 vm::VerifiedProgram random_program(Random& random, int instructions);
 
-// Returns a number that rounds to a finite f32: an integer, a number of few digits, or one of any cancellation.
+// Returns a number that rounds to a finite f32: an integer, a number of few digits, or one of any magnitude.
 double random_constant(Random& random);
 
 }  // namespace fathom::test

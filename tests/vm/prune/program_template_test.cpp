@@ -1,4 +1,4 @@
-// ProgramTemplates: parts come out of a pool as they were put in. Many parts evaluated side by side have the same
+// Program templates: parts come out of a pool as they were put in. Many parts evaluated side by side have the same
 // distances as each alone.
 #include "vm/prune/program_template.h"
 

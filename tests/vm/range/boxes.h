@@ -42,7 +42,7 @@ inline BoxSet random_boxes(Random& random) {
 }
 
 // Random float in [lo, hi]: an end, or any number between. If an end is infinite, the number may have any
-// cancellation.
+// magnitude.
 inline float random_within(Random& random, float lo, float hi) {
   const int pick = random.below(6);
   if (pick == 0) return std::max(lo, -kLargest);

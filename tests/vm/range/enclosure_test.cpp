@@ -17,7 +17,7 @@ void add_opcodes(const vm::VerifiedProgram& program, std::set<Opcode>& seen) {
     seen.insert(static_cast<Opcode>(words[i] & 0xff));
 }
 
-// Boxes whose x interval spans `steps` floats, from a start of any cancellation or between -2 and 2.
+// Boxes whose x interval spans `steps` floats, from a start of any magnitude or between -2 and 2.
 BoxSet runs_of_floats(Random& random, std::uint32_t steps) {
   BoxSet boxes{};
   for (std::size_t i = 0; i < kEnclosedBoxes; ++i) {

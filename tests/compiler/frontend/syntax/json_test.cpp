@@ -89,8 +89,8 @@ TEST_CASE("every value has its exact span", "[json]") {
 }
 
 TEST_CASE("numbers end where they end, whatever follows", "[json]") {
-  for (const char* march_each : {"", " ", "\n", "\r\n", "\t", "//", "/**/", "// 1"}) {
-    const Source source("scene.json", std::string("-1.5e1") + march_each);
+  for (const char* separator : {"", " ", "\n", "\r\n", "\t", "//", "/**/", "// 1"}) {
+    const Source source("scene.json", std::string("-1.5e1") + separator);
     const syntax::File file = read(source);
     CHECK(text_at(source, file.root.span) == "-1.5e1");
     CHECK(std::get<double>(file.root.data) == -15);
