@@ -10,7 +10,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "runtime/measure/sampling_error.h"
+#include "tests/support/sampling_error.h"
 
 namespace fathom::bench {
 
@@ -32,12 +32,13 @@ void slope_bars(BarTable& table, const LightCounts& counts) {
     SamplerKind kind;
     double most, least;
   };
-  for (std::size_t f = 0; f < square_integrands().size(); ++f) {
+  for (std::size_t f = 0; f < test::square_integrands().size(); ++f) {
     const double most = f == 0 ? -1.2 : -0.7;
     for (const Row& row : {Row{SamplerKind::Independent, -0.45, -0.55}, Row{SamplerKind::Sobol, most, -9},
                            Row{SamplerKind::Blue, most, -9}}) {
-      const auto& integrand = square_integrands()[f];
-      const double slope = error_slope(sampling_errors(row.kind, integrand, kPowersOfTwo, counts.slope_repeats, -1));
+      const auto& integrand = test::square_integrands()[f];
+      const double slope =
+          test::error_slope(test::sampling_errors(row.kind, integrand, kPowersOfTwo, counts.slope_repeats, -1));
       const bool two_sided = row.least > -9;
       table.row("B22",
                 fmt::format("{}, {}: exponent of the error's fall, 16 to 4096 samples",

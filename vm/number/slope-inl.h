@@ -78,7 +78,6 @@ inline Interval seen(const Slope& a) {
   const Interval range = outward(a.v.lo - slack, a.v.hi + slack);
   return a.nonnegative ? Interval{std::max(0.0, range.lo), std::max(0.0, range.hi)} : range;
 }
-inline Interval seen_both(const Slope& a, Interval value) { return hull(seen(a), value); }
 
 inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, double norm, double error) {
   const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);

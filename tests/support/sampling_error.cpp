@@ -1,11 +1,11 @@
-#include "runtime/measure/sampling_error.h"
+#include "tests/support/sampling_error.h"
 
 #include <cmath>
 #include <complex>
 #include <cstddef>
 #include <numbers>
 
-namespace fathom::runtime {
+namespace fathom::test {
 namespace {
 
 // Samples are multiples of 2^-24, and each stands for the middle of its interval. Coordinates are in double.
@@ -30,18 +30,19 @@ constexpr SquareIntegrand kIntegrands[] = {
     {"disc", disc, 0.16 * std::numbers::pi},
 };
 
-glm::vec2 draw(const PixelKey& pixel, std::uint32_t sample, int bounce) {
-  Sampler sampler(pixel, sample);
+glm::vec2 draw(const runtime::PixelKey& pixel, std::uint32_t sample, int bounce) {
+  runtime::Sampler sampler(pixel, sample);
   if (bounce >= 0) sampler.start_bounce(bounce);
   return sampler.next2();
 }
 
 // Returns the error of each pixel. [y * side + x]
-std::vector<double> error_picture(const SamplePlan& plan, const SquareIntegrand& integrand, int side, int bounce) {
+std::vector<double> error_image(const runtime::SamplePlan& plan, const SquareIntegrand& integrand, int side,
+                                int bounce) {
   std::vector<double> errors;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
-      const PixelKey pixel(plan, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+      const runtime::PixelKey pixel(plan, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
       double sum = 0;
       for (int i = 0; i < plan.spp; ++i) sum += integrand.value(draw(pixel, static_cast<std::uint32_t>(i), bounce));
       errors.push_back(sum / plan.spp - integrand.integral);
@@ -50,23 +51,23 @@ std::vector<double> error_picture(const SamplePlan& plan, const SquareIntegrand&
   return errors;
 }
 
-// Returns the mean power of the coefficients of the image's discrete Fourier transform with at most `most` periods,
+// Returns the mean power of the coefficients of the image's discrete Fourier transform with at most `max` periods,
 // except the constant. For all coefficients the mean would be the sum of the squares over their number. Transforms
 // rows first, then columns. Half of the plane is enough, because the image is real and the other half mirrors it.
-double mean_power(const std::vector<double>& picture, int side, int most) {
+double mean_power(const std::vector<double>& image, int side, int max) {
   using Complex = std::complex<double>;
   std::vector<Complex> wave;  // [i] e^(2 pi i / side)
   for (int i = 0; i < side; ++i) wave.push_back(std::polar(1.0, 2 * std::numbers::pi * i / side));
   const auto wave_at = [&](int i) { return wave[static_cast<std::size_t>((i % side + side) % side)]; };
   double sum = 0;
   int count = 0;
-  for (int kx = 0; kx <= most; ++kx) {
+  for (int kx = 0; kx <= max; ++kx) {
     std::vector<Complex> rows(static_cast<std::size_t>(side));
     for (int i = 0; i < side * side; ++i) {
-      rows[static_cast<std::size_t>(i / side)] += picture[static_cast<std::size_t>(i)] * wave_at(kx * (i % side));
+      rows[static_cast<std::size_t>(i / side)] += image[static_cast<std::size_t>(i)] * wave_at(kx * (i % side));
     }
-    for (int ky = kx == 0 ? 1 : -most; ky <= most; ++ky) {
-      if (kx * kx + ky * ky > most * most) continue;
+    for (int ky = kx == 0 ? 1 : -max; ky <= max; ++ky) {
+      if (kx * kx + ky * ky > max * max) continue;
       Complex coefficient = 0;
       for (int y = 0; y < side; ++y) coefficient += rows[static_cast<std::size_t>(y)] * wave_at(ky * y);
       sum += std::norm(coefficient) / (side * side);
@@ -80,13 +81,13 @@ double mean_power(const std::vector<double>& picture, int side, int most) {
 
 std::span<const SquareIntegrand> square_integrands() { return kIntegrands; }
 
-std::vector<SamplingError> sampling_errors(SamplerKind kind, const SquareIntegrand& integrand,
+std::vector<SamplingError> sampling_errors(runtime::SamplerKind kind, const SquareIntegrand& integrand,
                                            std::span<const int> counts, int repeats, int bounce) {
   std::vector<SamplingError> errors;
   for (const int count : counts) errors.push_back({count, 0});
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const auto place = static_cast<std::uint32_t>(repeat);
-    const PixelKey pixel({kind, place + 1, counts.back()}, place * 7, place * 5);
+    const runtime::PixelKey pixel({kind, place + 1, counts.back()}, place * 7, place * 5);
     double sum = 0;
     int drawn = 0;
     for (SamplingError& error : errors) {
@@ -114,16 +115,16 @@ double error_slope(std::span<const SamplingError> errors) {
   return (xy - x * y / n) / (xx - x * x / n);
 }
 
-double low_frequency_power(SamplerKind kind, const SquareIntegrand& integrand, int spp, int side, int seeds,
+double low_frequency_power(runtime::SamplerKind kind, const SquareIntegrand& integrand, int spp, int side, int seeds,
                            int bounce) {
   double low = 0, all = 0;
   for (int seed = 0; seed < seeds; ++seed) {
-    const SamplePlan plan{kind, static_cast<std::uint64_t>(seed) + 1, spp};
-    const std::vector<double> picture = error_picture(plan, integrand, side, bounce);
-    low += mean_power(picture, side, side / 8);
-    for (const double error : picture) all += error * error / (side * side);
+    const runtime::SamplePlan plan{kind, static_cast<std::uint64_t>(seed) + 1, spp};
+    const std::vector<double> image = error_image(plan, integrand, side, bounce);
+    low += mean_power(image, side, side / 8);
+    for (const double error : image) all += error * error / (side * side);
   }
   return low / all;
 }
 
-}  // namespace fathom::runtime
+}  // namespace fathom::test
