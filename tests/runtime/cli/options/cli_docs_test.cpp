@@ -1,5 +1,4 @@
-// Runs the commands shown in README.md and docs/tutorial/first-scene.md on the scenes of these pages: the output must
-// be as shown.
+// Runs the commands that README.md and other pages show on the scenes of these pages: the output must be as shown.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
@@ -81,6 +80,10 @@ int check_page(const Folder& folder, const std::string& page) {
 
 TEST_CASE("docs: the tutorial's commands print what it shows", "[docs]") {
   CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/tutorial/first-scene.md")) >= 5);
+}
+
+TEST_CASE("docs: each pass prints the graphs before and after it as its section shows them", "[docs]") {
+  CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/explanation/passes.md")) >= 20);
 }
 
 TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[docs]") {
