@@ -2,7 +2,7 @@
 // given the value, so that many rays can be searched side by side and one evaluation answers all of them. certify.h
 // defines the root and describes how a segment is proved free.
 //
-//     Search search(field, origin, direction, side, interval);
+//     CertifiedSearch search(field, origin, direction, side, interval);
 //     while (!search.done()) search.supply(field.evaluate(search.point(), ...), scratch);
 //
 // The search depends only on the field, the ray and the interval.
