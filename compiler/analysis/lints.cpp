@@ -164,7 +164,7 @@ class Linter {
       for (const auto [arm, within] : containment_.hidden_arms(graph_, arms)) {
         if (holds_clear_[within]) continue;
         if (is_area_light_[arm]) {
-          warn("W0507", arm, fmt::format("the lamp {} sends out no light", word(arm)),
+          warn("W0507", arm, fmt::format("the area light {} emits no light", word(arm)),
                fmt::format("it is wholly inside the {}", word(within)),
                "move it out, or cut room for it out of what it is in");
         } else {
@@ -206,8 +206,8 @@ class Linter {
     const glm::dvec3 size = box(id).hi - box(id).lo;
     const int flat = (size.x <= 0) + (size.y <= 0) + (size.z <= 0);
     if (!vanishes_[id] && flat < 2) return;
-    warn("W0507", id, fmt::format("the lamp {} sends out no light", word(id)), "it has no surface",
-         "light comes from surfaces only: give it one");
+    warn("W0507", id, fmt::format("the area light {} emits no light", word(id)), "it has no surface",
+         "only surfaces emit light: give it one");
   }
 
   void check_repetition(NodeId id) {

@@ -107,7 +107,7 @@ inline constexpr ErrorCode kErrorCodes[] = {
     {"W0504", "a repetition that evaluates many copies"},
     {"W0505", "a blend too wide for what it joins"},
     {"W0506", "a part thinner than floats tell apart"},
-    {"W0507", "a lamp that sends out no light"},
+    {"W0507", "an area light that emits no light"},
     {"W0508", "steps many times shorter"},
     {"W0509", "a formula without a bound"},
     {"W0510", "the camera is inside a solid"},

@@ -13,27 +13,22 @@
 namespace fathom::runtime {
 
 const char* const kReadChartATime =
-    "Further left is faster, lower is more accurate; a larger disc fails more often. The bold point is what Fathom "
-    "does "
-    "when nothing else is asked. Whatever is shaded is beaten, in time and error, by a point that fails no more "
-    "often "
-    "than the default. The line at 0 holds what has no error, the reference by definition.";
+    "Points further left are faster, lower points are more accurate, and larger discs fail more often. The bold "
+    "point "
+    "is the default method. Points in the shaded area are slower and less accurate than a point that fails no more "
+    "often than the default. Points on the line at 0 have no error: the reference, by definition.";
 const char* const kReadChartAEvaluations =
-    "The same errors over the work that any machine would have to do: how often the field is evaluated for a ray. "
-    "Methods that differ here but not in time pay for their evaluations in other ways.";
+    "The same errors over the number of evaluations of the field per ray, which does not depend on the machine. "
+    "Methods with equal evaluations and unequal times pay for other work.";
 const char* const kReadChartB =
-    "A picture with more samples is further to the right and lower; without bias and with independent samples the "
-    "slope is -1. A curve that bends to its dashed line has met its bias: more samples no longer help. A floor is "
-    "measured with the noise that the mean of all seeds still has, so an unbiased method has one too, far below its "
-    "curve.";
+    "An image with more samples is further right and lower. Without bias and with independent samples the slope is "
+    "-1. A curve that bends to its dashed line is biased: more samples no longer help. The measured floor includes "
+    "the noise of the mean over all seeds, so an unbiased method has a floor, too, far below its curve.";
 const char* const kReadChartLight =
-    "The same pictures by how paths find light and by what their random numbers are. \"lights\": lamps are looked "
-    "for "
-    "from every hit; \"hits\": paths meet them by chance; \"both\": both, weighted. Light through glass or from "
-    "mirrors "
-    "is met by chance in any way, so in scenes with both the curves come together where that is what is left. The "
-    "time "
-    "to 1e-3 is that of the fitted law, beyond the last point a guess.";
+    "The same images by method of light sampling and by sampler. \"nee\": next-event estimation at every hit; "
+    "\"bsdf\": paths hit lights by BSDF sampling; \"mis\": both, combined by MIS weights. Only BSDF sampling finds "
+    "light through glass or from mirrors, so in scenes with both the curves meet where this light remains. The time "
+    "to 1e-3 follows from the fitted law, and is extrapolated beyond the last point.";
 
 namespace {
 

@@ -36,8 +36,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   SceneArguments scene_arguments;
   std::optional<std::string> output;
   bool bare = false;
-  Arguments arguments("import",
-                      "Writes a model of another format as a scene file, with a ground to stand on and a lamp.",
+  Arguments arguments("import", "Writes a model of another format as a scene file, on a ground and under a light.",
                       kImportExamples);
   add_scene_arguments(arguments, scene_arguments);
   arguments.option("-o,--output", "FILE", "Scene file to write (standard output)", any_text(output));

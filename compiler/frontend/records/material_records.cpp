@@ -84,18 +84,19 @@ RecordSpec principled() {
 }
 
 RecordSpec pattern(std::string type, std::vector<PropertySpec> own) {
-  PropertySpec kind = choice({"checker", "stripes", "gradient", "noise", "bricks"}, "how the two are spread", true);
+  PropertySpec kind =
+      choice({"checker", "stripes", "gradient", "noise", "bricks"}, "arrangement of the two values", true);
   kind.name = "pattern";
   // row_for() in textures.cpp sets the types of `a` and `b` from the property that has the pattern.
   RecordSpec record{type, "`" + type + "`", type + " pattern", {kind}};
-  record.properties.push_back(varying(other("a", ValueType::Color, "where the pattern is 0", true)));
-  record.properties.push_back(varying(other("b", ValueType::Color, "where the pattern is 1", true)));
+  record.properties.push_back(varying(other("a", ValueType::Color, "value where the pattern is 0", true)));
+  record.properties.push_back(varying(other("b", ValueType::Color, "value where the pattern is 1", true)));
   for (PropertySpec& property : own) record.properties.push_back(std::move(property));
   // The same rows as for a node.
   for (const char* name : {"scale", "rotate"}) record.properties.push_back(*use_record().find(name));
-  record.properties.push_back(vec3("translate", "how far to move the pattern, after scale and rotate", {0, 0, 0}));
+  record.properties.push_back(vec3("translate", "translation of the pattern, after scale and rotate", {0, 0, 0}));
   record.properties.push_back(
-      space_row("whose coordinates it is in, and all that it mixes: the scene's, or the node's"));
+      space_row("coordinates of the pattern and of all patterns that it mixes: the scene's or the node's"));
   return record;
 }
 
@@ -105,7 +106,7 @@ const std::vector<RecordSpec>& material_records() {
   static const std::vector<RecordSpec> records = {
       material("diffuse", {plain_row(&M::color, "albedo", 0.8)}),
       material("emissive", {plain_row(&M::emission, "radiance, both sides", 1),
-                            plain_row(&M::color, "albedo of the lamp itself", 0)}),
+                            plain_row(&M::color, "albedo of the surface itself", 0)}),
       material("specular", {plain_row(&M::color, "reflectance of the mirror", 1)}),
       material("transparent", {plain_row(&M::ior, "index of refraction relative to vacuum", 1.5),
                                plain_row(&M::color, "tint at each crossing", 1),
