@@ -1,6 +1,6 @@
 // The passes of a render: one pass for all samples, or with a noise threshold several passes, each of which depends
 // on the results of the passes before.
-// Tested by: tests/runtime/render_test.cpp, film/adaptive_test.cpp
+// Tested by: tests/runtime/render_test.cpp, tests/runtime/film/adaptive_test.cpp
 #pragma once
 
 #include "runtime/film/partial_render.h"

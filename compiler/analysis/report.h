@@ -2,8 +2,8 @@
 // distance a ray may step, and which node costs the most.
 //
 // A ray steps the field's value divided by its Lipschitz constant. The report's constants are those of the nodes as
-// written: a factor that passes/level.cpp divides by counts at the node that causes it. A node's cost is its constant
-// over the largest of its children's constants, so that the costs along a path multiply to the whole.
+// written: a factor that compiler/passes/normalise.cpp divides by counts at the node that causes it. A node's cost is
+// its constant over the largest of its children's constants, so that the costs along a path multiply to the whole.
 // Tested by: tests/compiler/analysis/report_test.cpp
 #pragma once
 

@@ -4,7 +4,7 @@
 //
 // The function maps a point of the scene to a distance, both in scene units. The length of the text depends on the
 // program alone. Surfaces and materials are not part of the text.
-// Tested by: tests/compiler/emit/emit_test.cpp, tests/compiler/emitted_scenes_test.cpp
+// Tested by: tests/compiler/emit/emit_test.cpp, tests/compiler/emit/emitted_cpp_test.cpp
 #pragma once
 
 #include <string>

@@ -25,7 +25,7 @@ struct ReadScene {
 std::optional<ReadScene> read_scene(Source& source, Diagnostics& diagnostics, const Limits& limits = {},
                                     const Definitions& definitions = {}, const ImportReader& imports = {});
 
-// Reads a text scene as a JSON scene that keeps its parameters (frontend/text/read_text.h).
+// Reads a text scene as a JSON scene that keeps its parameters (compiler/frontend/text/read_text.h).
 std::optional<SceneWithFormulas> read_with_formulas(Source& source, Diagnostics& diagnostics,
                                                     const Limits& limits = {}, const ImportReader& imports = {});
 

@@ -105,7 +105,8 @@ enum class Kind : std::uint8_t {
   Transform,
   // Displaced: a distance plus a formula. Unlike Add it keeps its operands' order, because the first has the surface.
   Displaced,
-  // Bounded: a formula as a distance within a box (shapes/functions.cpp). Displacement and Expression become Bounded.
+  // Bounded: a formula as a distance within a box (compiler/shapes/functions.cpp). Displacement and Expression become
+  // Bounded.
   Bounded,
   // Scaled: the child's distance times params[0] > 0, which makes it a distance again if the child's changes faster
   // than a distance.

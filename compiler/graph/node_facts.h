@@ -14,8 +14,8 @@ namespace fathom::compiler {
 enum class Exactness { Exact, Bound, Estimate };
 
 // A node's value f divided by `lipschitz` is a distance: the value of a twisted node, for one, can change faster than
-// the point moves. The compiler (passes/level.cpp) divides where it combines such a node with others, the renderer
-// where it marches.
+// the point moves. The compiler (compiler/passes/normalise.cpp) divides where it combines such a node with others,
+// the renderer where it marches.
 struct NodeFacts {
   Box box;               // the distance is positive outside it
   double lipschitz = 1;  // |f(p) - f(q)| <= lipschitz |p - q| if certified

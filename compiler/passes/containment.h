@@ -1,6 +1,6 @@
-// Operands of hard combinators that change nothing, as far as boxes and one interval evaluation show. passes/cull.cpp
-// removes these operands, and compiler/analysis/lints.cpp warns about them.
-// Tested by: tests/compiler/passes/passes_test.cpp, tests/golden/diagnostics (W0501, W0502, W0503)
+// Operands of hard combinators that change nothing, as far as boxes and one interval evaluation show.
+// compiler/passes/cull.cpp removes these operands, and compiler/analysis/lints.cpp warns about them. Tested by:
+// tests/compiler/passes/passes_test.cpp, tests/golden/diagnostics (W0501, W0502, W0503)
 #pragma once
 
 #include <cstddef>

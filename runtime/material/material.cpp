@@ -107,7 +107,7 @@ MaterialPoint Materials::at(std::uint32_t material, glm::dvec3 position, glm::dv
   return to_point(numbers, m.type, m.thin_walled);
 }
 
-// The recursion is shallow: patterns nest a few levels at most (frontend/elaborate/textures.cpp).
+// The recursion is shallow: patterns nest a few levels at most (compiler/frontend/elaborate/textures.cpp).
 glm::dvec3 Materials::value(std::uint32_t texture, const TexturePoint& point, vm::Workspace& workspace) const {
   const compiler::Texture& node = scene_->textures[texture];
   if (const auto* constant = std::get_if<glm::dvec3>(&node)) return *constant;

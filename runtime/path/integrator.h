@@ -15,7 +15,7 @@
 // the next stands in the states. Light is found in two ways, by shadow rays and by the paths' own rays, with weights
 // whose sum is 1 (mis.h).
 //
-//     Integrator integrator(context, {plan}, source, sink);
+//     Integrator integrator(context, source, sink);
 //     integrator.run();
 //
 // Source: Kajiya, "The Rendering Equation", 1986; Veach, "Robust Monte Carlo Methods for Light Transport Simulation",

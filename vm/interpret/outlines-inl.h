@@ -7,7 +7,7 @@
 // which has a unit gradient and the right sign even on the boundary. Only beyond a piece's end is the distance a root
 // of squares, whose gradient vanishes at 0. The inside of a corner follows from the shape, never from a computed
 // sign. Cases after Inigo Quilez, "2D distance functions" (iquilezles.org), derived anew. Sines, normals and lengths
-// come as immediates from compiler/shapes/outline_facts.cpp. Tested by: tests/compiler/shapes/shapes_test.cpp
+// come as immediates from compiler/shapes/outlines.cpp. Tested by: tests/compiler/shapes/shapes_test.cpp
 #if defined(FATHOM_VM_OUTLINES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef FATHOM_VM_OUTLINES_INL
 #undef FATHOM_VM_OUTLINES_INL

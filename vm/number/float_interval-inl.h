@@ -5,7 +5,7 @@
 // rounding. The whole line [-inf, inf] means "any value, or NaN", and every value that may be NaN has the whole line.
 // So an infinite end is a value that floats can reach, and 0 times an infinite end is NaN. An undecided comparison
 // gives the hull of both answers. No bound is NaN, and -0 counts as 0. Constants are those of f32 evaluation, and
-// finite. The elementary functions are in enclosure_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
+// finite. The elementary functions are in float_interval_elementary-inl.h. Source: Moore, "Interval Analysis", 1966.
 //
 //     x * x - 1 over x in [-1, 2] as a product:    [-2, 4] - 1 = [-3, 3]      with sqr:    [0, 4] - 1 = [-1, 3]
 //

@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
 // Returns a float below `value`, by at least 2^-22 of `value`. Widths of blends are double here and f32 in
-// vm/prune/settle.h. The margins of both operands outweigh the rounding of the width, so operands that
+// vm/prune/resolve_choices.h. The margins of both operands outweigh the rounding of the width, so operands that
 // resolve_pairs() finds too far apart to blend do not blend in double either.
 inline float below(double value) {
   constexpr double kLargest = std::numeric_limits<float>::max(), kShare = 0x1p-22, kLeast = 0x1p-126;

@@ -29,9 +29,9 @@ class TextureReader {
  public:
   TextureReader(const Scope& scope, Diagnostics& diagnostics) : scope_(scope), diagnostics_(diagnostics) {}
 
-  // Reads a value for which varies() is true (frontend/records/written_numbers.h). `parameter` is the row of its
-  // property. `space` is the material's space. A pattern may override it for itself and the values it mixes. Returns
-  // nullopt after a report. A pattern that mixes two equal constants is read as that constant.
+  // Reads a value for which varies() is true (compiler/frontend/records/written_numbers.h). `parameter` is the row of
+  // its property. `space` is the material's space. A pattern may override it for itself and the values it mixes.
+  // Returns nullopt after a report. A pattern that mixes two equal constants is read as that constant.
   std::optional<ReadTexture> read(const syntax::Value& value, const PropertySpec& parameter, TextureSpace space) {
     return read(value, parameter, Context{space, 1});
   }

@@ -27,7 +27,7 @@ void check_definitions(const Definitions& definitions, const Scope& scope, Diagn
 
 void warn_of_unused(const Scope& scope, Diagnostics& diagnostics);
 
-// Parameters that make a scene animated if it declares them (frontend/animation.h).
+// Parameters that make a scene animated if it declares them (compiler/frontend/animation.h).
 inline constexpr std::string_view kTimeParameter = "time", kFrameParameter = "frame";
 
 bool declares(const Scope& parameters, std::string_view name);

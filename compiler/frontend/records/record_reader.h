@@ -29,8 +29,8 @@ class RecordReader {
   bool good() const { return good_; }
 
   // Returns the value given under this name or an alias, with formulas replaced by numbers. Returns nullptr if the
-  // value is absent or invalid. A value that varies over space (frontend/elaborate/textures.h) stays as written. The
-  // pointer is valid as long as the reader and the record.
+  // value is absent or invalid. A value that varies over space (compiler/frontend/elaborate/textures.h) stays as
+  // written. The pointer is valid as long as the reader and the record.
   const syntax::Value* value(std::string_view name) const;
 
   // Returns the given number or numbers, or the table's default if the value is absent, invalid or not constant. An

@@ -57,7 +57,7 @@ struct PropertySpec {
   std::vector<std::string_view> choices = {};     // the first is the default
   std::vector<std::string_view> instead_of = {};  // properties that this one replaces; only one of them may be given
   std::string_view alias_of = {};                 // property that this one renames; only one of the two may be given
-  bool varies = false;  // may also be a formula of the point or a pattern (frontend/elaborate/textures.h)
+  bool varies = false;  // may also be a formula of the point or a pattern (compiler/frontend/elaborate/textures.h)
 };
 
 struct RecordSpec {

@@ -1,4 +1,4 @@
-// Recursive descent parser for the expressions of a text (frontend/text/parse/parser.h).
+// Recursive descent parser for the expressions of a text (compiler/frontend/text/parse/parser.h).
 #pragma once
 
 #include <deque>

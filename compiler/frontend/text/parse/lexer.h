@@ -1,5 +1,5 @@
 // Lexer for scenes in text notation (docs/reference/language.md).
-// Tested by: tests/compiler/text_parser_test.cpp
+// Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp
 #pragma once
 
 #include <cstddef>

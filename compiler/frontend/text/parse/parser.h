@@ -2,7 +2,7 @@
 //
 // A statement ends at a line that is not indented further than the statement's first word. After an error the parser
 // continues at the next such line, so that it reports several errors.
-// Tested by: tests/compiler/text_parser_test.cpp, tests/golden/diagnostics (E08xx)
+// Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp, tests/golden/diagnostics (E08xx)
 #pragma once
 
 #include <optional>

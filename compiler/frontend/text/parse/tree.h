@@ -4,7 +4,7 @@
 //
 // is a Statement::Let named tooth, whose value is a Call of rotate with two arguments, the first of which is a Call
 // of box.
-// docs/reference/language.md has the grammar. Tested by: tests/compiler/text_parser_test.cpp
+// docs/reference/language.md has the grammar. Tested by: tests/compiler/frontend/text/text_evaluate_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 namespace fathom::compiler::text {
 
 struct Expr;
-struct Word;  // a function of the language (frontend/text/parse/vocabulary.h)
+struct Word;  // a function of the language (compiler/frontend/text/parse/vocabulary.h)
 
 // Argument of a call or field of a record. An argument without a name is positional.
 struct Argument {
@@ -35,7 +35,7 @@ struct Joint {
   Expr* blend = nullptr;
 };
 
-// Target of a name, found before evaluation (frontend/text/parse/names.h).
+// Target of a name, found before evaluation (compiler/frontend/text/parse/names.h).
 struct Reference {
   enum class Kind : std::uint8_t { None, Local, Global, Coordinate, Constant, Definition, Objects };
   Kind kind = Kind::None;
