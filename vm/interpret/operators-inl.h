@@ -224,7 +224,8 @@ HWY_INLINE Slope polygon(const Vec3<Slope>& p, const Outline& corners) {
   for (std::size_t i = 0; i < corners.count(); ++i) {
     scale = std::max(scale, std::fabs(corners(i, 0)) + std::fabs(corners(i, 1)));
   }
-  d.error += kFloatError / kUnit * scale;
+  const double outline_error = kFloatError / kUnit * scale;
+  d.below += outline_error, d.above += outline_error;
   return d;
 }
 
@@ -394,7 +395,7 @@ HWY_INLINE Along smooth_max(const Along& a, const Along& b, const Along& k, cons
 HWY_INLINE Slope smooth_min(const Slope& a, const Slope& b, const Slope& k, const Slope& inv4k) {
   const Slope generic = smooth_min<Slope>(a, b, k, inv4k);
   // The gradient is between a's and b's, and a blend of nonnegative operands can be negative.
-  Slope r = either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error);
+  Slope r = either(a, b, smooth_min(a.v, b.v, k.v, inv4k.v), generic.error(), generic.error());
   r.nonnegative = false;
   return r;
 }

@@ -190,7 +190,8 @@ inline Slope noise(const Slope& x, const Slope& y, const Slope& z) {
     return n.d[0] * by_x + n.d[1] * by_y + n.d[2] * by_z;
   };
   const double stretch = gram_norm((sqr(x) + sqr(y) + sqr(z)).squares.g);
-  const double carried = kNoiseSlope * std::sqrt(x.error * x.error + y.error * y.error + z.error * z.error);
+  const double carried =
+      kNoiseSlope * std::sqrt(x.error() * x.error() + y.error() * y.error() + z.error() * z.error());
   const double error = carried < kUnbounded ? std::min(carried, 2 * kNoiseRange / kUnit) + kNoiseUnits : kUnbounded;
   return make_slope(n.v, along(x.dx, y.dx, z.dx), along(x.dy, y.dy, z.dy), along(x.dz, y.dz, z.dz),
                     times(n.steepest, stretch), error);

@@ -8,6 +8,7 @@
 // |grad(a + b)| <= |grad a| + |grad b|. A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s)
 // is J^T F / |F|, no longer than the largest singular value of J, whose square is at most the largest row sum of |J^T
 // J| (Gershgorin). So distances have norm 1 even where they are 0 and the quotient of intervals is unbounded.
+// A value made of exponentials keeps bounds of its logarithm (logarithm-inl.h).
 //
 // Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
 // "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: the error of an operation is its operands'
@@ -29,13 +30,11 @@
 #include <array>
 
 #include "vm/number/interval_elementary-inl.h"
+#include "vm/number/logarithm-inl.h"
 #include "vm/program/opcode.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
-
-inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-inline constexpr double kUnit = 0x1p-24;  // unit of errors
 
 // Extra bounds of a value that is a sum of squares |F|^2. Copies skip the members when not `known`, as for most
 // values.
@@ -58,9 +57,14 @@ struct Slope {
   Interval v;           // range of the exact value
   Interval dx, dy, dz;  // ranges of the partial derivatives, where these exist
   double norm;          // bound on the gradient's length; infinite where the value may jump
-  double error;         // bound on |f32 value - exact value|, in kUnit
-  bool nonnegative;     // true if neither the exact nor the f32 value can be negative
+  // Bounds on exact value - f32 value and on f32 value - exact value, in kUnit. If only `above` is infinite, the f32
+  // value may be infinite, and if only `below` is, minus infinity. If both are infinite, it may be NaN.
+  double below, above;
+  bool nonnegative;  // true if neither the exact nor the f32 value can be negative
   Squares squares = {};
+  Logarithm logarithm = {};
+
+  double error() const { return std::max(below, above); }  // bound on |f32 value - exact value|, in kUnit
 
   static inline Slope broadcast(double value);
 };
@@ -68,26 +72,36 @@ struct Slope {
 // Returns the error, in kUnit, of a rounding to f32 whose result is at most `size`. Subnormals have an absolute
 // error; overflow has no bound.
 inline double rounding(double size) { return size < 3.4e38 ? size + 0x1p-120 : kUnbounded; }
-// Increases a bound by more than the rounding of the nonnegative doubles that it is a sum or product of. A NaN
-// becomes kUnbounded.
-inline double bound(double value) { return value >= 0 ? value * (1 + 1e-14) : kUnbounded; }
-
 // Returns the range of the f32 value.
 inline Interval seen(const Slope& a) {
-  const double slack = bound(a.error * kUnit);
-  const Interval range = outward(a.v.lo - slack, a.v.hi + slack);
+  const Interval range = outward(a.v.lo - bound(a.below * kUnit), a.v.hi + bound(a.above * kUnit));
   return a.nonnegative ? Interval{std::max(0.0, range.lo), std::max(0.0, range.hi)} : range;
 }
 
-inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, double norm, double error) {
+// Returns the bound on exact value - rounded f32 value, or the reverse, given the bound before the rounding, for a
+// value in v. A rounding takes no value that is above an exact one below it by more than the exact one's rounding.
+inline double rounded_below(Interval v, double below) {
+  return below + rounding(magnitude(outward(v.lo - bound(below * kUnit), v.hi)));
+}
+inline double rounded_above(Interval v, double above) {
+  return above + rounding(magnitude(outward(v.lo, v.hi + bound(above * kUnit))));
+}
+
+inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, double norm, double below, double above) {
   const double mx = magnitude(dx), my = magnitude(dy), mz = magnitude(dz);
   const double length = bound(std::sqrt(mx * mx + my * my + mz * mz));
   const double n = std::min(bound(norm), length);
-  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(error), false};
+  return {v, intersect(dx, -n, n), intersect(dy, -n, n), intersect(dz, -n, n), n, bound(below), bound(above), false};
+}
+inline Slope make_slope(Interval v, Interval dx, Interval dy, Interval dz, double norm, double error) {
+  return make_slope(v, dx, dy, dz, norm, error, error);
 }
 // Returns f(a) with range v, where f's derivative is in `slope` over a's exact values.
+inline Slope chain(const Slope& a, Interval v, Interval slope, double below, double above) {
+  return make_slope(v, a.dx * slope, a.dy * slope, a.dz * slope, times(a.norm, magnitude(slope)), below, above);
+}
 inline Slope chain(const Slope& a, Interval v, Interval slope, double error) {
-  return make_slope(v, a.dx * slope, a.dy * slope, a.dz * slope, times(a.norm, magnitude(slope)), error);
+  return chain(a, v, slope, error, error);
 }
 // Returns a value in v with unbounded derivatives, whose f32 value is in v or `alternatives`.
 inline Slope jump(Interval v, Interval alternatives) {
@@ -108,15 +122,31 @@ inline Slope exactly(Interval v) {
 inline Slope Slope::broadcast(double value) {
   Slope result = exactly(Interval::broadcast(value));
   const bool is_float = static_cast<double>(static_cast<float>(value)) == value;
-  if (!is_float) result.error = rounding(std::fabs(value));
+  if (!is_float) result.below = result.above = rounding(std::fabs(value));
   return result;
 }
 
-inline Slope operator-(const Slope& a) { return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.error); }
+// Returns bounds of ln a, also for a value that has only the usual bounds.
+inline Logarithm logarithm_of(const Slope& a) {
+  if (a.logarithm.known) return a.logarithm;
+  const double least = std::min(a.v.lo, seen(a).lo);
+  if (!(least > 0)) return {};
+  return make_logarithm(log(a.v), a.dx / a.v, a.dy / a.v, a.dz / a.v, a.norm / a.v.lo, a.below / least,
+                        a.above / least, 0);
+}
+// Returns combine(ln a, ln b), if one of the values already has a logarithm. Values without one seldom gain by it.
+template <class Combine>
+inline Logarithm combined(const Slope& a, const Slope& b, const Combine& combine) {
+  if (!a.logarithm.known && !b.logarithm.known) return {};
+  const Logarithm of_a = logarithm_of(a), of_b = logarithm_of(b);
+  return of_a.known && of_b.known ? combine(of_a, of_b) : Logarithm();
+}
+
+inline Slope operator-(const Slope& a) { return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.above, a.below); }
 inline Slope operator+(const Slope& a, const Slope& b) {
   const Interval sum = seen(a) + seen(b);
   Slope r = make_slope(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
-                       a.error + b.error + rounding(magnitude(sum)));
+                       rounded_below(a.v + b.v, a.below + b.below), rounded_above(a.v + b.v, a.above + b.above));
   r.nonnegative = a.nonnegative && b.nonnegative;
   r.squares.known = a.squares.known && b.squares.known;
   if (r.squares.known) {
@@ -124,30 +154,57 @@ inline Slope operator+(const Slope& a, const Slope& b) {
     // The roots of a and b are the lengths of two parts of F, so their errors add up like lengths: by hypot.
     r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
+  r.logarithm = combined(a, b, log_sum);
   return r;
 }
 inline Slope operator-(const Slope& a, const Slope& b) {
   return make_slope(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm,
-                    a.error + b.error + rounding(magnitude(seen(a) - seen(b))));
+                    rounded_below(a.v - b.v, a.below + b.above), rounded_above(a.v - b.v, a.above + b.below));
+}
+// Returns a b, given the errors of f32.
+inline Slope product(const Slope& a, const Slope& b, double below, double above) {
+  const double ma = magnitude(a.v), mb = magnitude(b.v);
+  Slope r = make_slope(a.v * b.v, a.v * b.dx + b.v * a.dx, a.v * b.dy + b.v * a.dy, a.v * b.dz + b.v * a.dz,
+                       times(ma, b.norm) + times(mb, a.norm), below, above);
+  r.nonnegative = a.nonnegative && b.nonnegative;
+  r.logarithm = combined(a, b, log_product);
+  return r;
+}
+// Returns a b where a's f32 value A may be infinite. For an f32 factor B > 0, A >= a - below makes A B at least
+// a b - |a| |B - b| - B below.
+inline Slope scaled(const Slope& a, const Slope& b) {
+  const Interval s = seen(b), v = a.v * b.v;
+  if (contains(s, 0)) return product(a, b, kUnbounded, kUnbounded);
+  const double most = magnitude(s), own = times(magnitude(a.v), b.error());
+  const bool flips = s.hi < 0;
+  return product(a, b, rounded_below(v, most * (flips ? a.above : a.below) + own),
+                 rounded_above(v, most * (flips ? a.below : a.above) + own));
 }
 inline Slope operator*(const Slope& a, const Slope& b) {
-  const double ma = magnitude(a.v), mb = magnitude(b.v);
+  if (!(a.error() < kUnbounded) && b.error() < kUnbounded) return scaled(a, b);
+  if (!(b.error() < kUnbounded) && a.error() < kUnbounded) return scaled(b, a);
   const Interval seen_a = seen(a);
-  const double error = times(magnitude(seen_a), b.error) + times(mb, a.error) + rounding(magnitude(seen_a * seen(b)));
-  Slope r = make_slope(a.v * b.v, a.v * b.dx + b.v * a.dx, a.v * b.dy + b.v * a.dy, a.v * b.dz + b.v * a.dz,
-                       times(ma, b.norm) + times(mb, a.norm), error);
-  r.nonnegative = a.nonnegative && b.nonnegative;
-  return r;
+  const double error =
+      times(magnitude(seen_a), b.error()) + times(magnitude(b.v), a.error()) + rounding(magnitude(seen_a * seen(b)));
+  return product(a, b, error, error);
 }
 inline Slope operator/(const Slope& a, const Slope& b) {
   const Interval sb = seen(b);
-  if (contains(sb, 0)) return jump(whole_line(), whole_line());
+  if (contains(sb, 0)) {
+    Slope r = jump(whole_line(), whole_line());
+    r.logarithm = combined(a, b, log_quotient);
+    return r;
+  }
   const Interval q = a.v / b.v, inverse = Interval{1, 1} / b.v;
   const double smallest = std::min(std::fabs(sb.lo), std::fabs(sb.hi)), m = magnitude(inverse);
-  const double error = (a.error + times(magnitude(q), b.error)) / smallest + rounding(magnitude(seen(a) / sb));
+  const double own = times(magnitude(q), b.error());
+  const bool flips = sb.hi < 0;
   Slope r = make_slope(q, (a.dx - q * b.dx) * inverse, (a.dy - q * b.dy) * inverse, (a.dz - q * b.dz) * inverse,
-                       times(a.norm + times(magnitude(q), b.norm), m), error);
+                       times(a.norm + times(magnitude(q), b.norm), m),
+                       rounded_below(q, ((flips ? a.above : a.below) + own) / smallest),
+                       rounded_above(q, ((flips ? a.below : a.above) + own) / smallest));
   r.nonnegative = a.nonnegative && b.nonnegative;
+  r.logarithm = combined(a, b, log_quotient);
   return r;
 }
 inline Slope divide(const Slope& a, const Slope& b) { return a / b; }
@@ -157,8 +214,9 @@ inline IntervalMask operator<(const Slope& a, const Slope& b) { return seen(a) <
 inline IntervalMask operator>(const Slope& a, const Slope& b) { return b < a; }
 
 // Returns a value that is a or b and is continuous where the choice changes.
-inline Slope either(const Slope& a, const Slope& b, Interval v, double error) {
-  Slope r = make_slope(v, hull(a.dx, b.dx), hull(a.dy, b.dy), hull(a.dz, b.dz), std::max(a.norm, b.norm), error);
+inline Slope either(const Slope& a, const Slope& b, Interval v, double below, double above) {
+  Slope r =
+      make_slope(v, hull(a.dx, b.dx), hull(a.dy, b.dy), hull(a.dz, b.dz), std::max(a.norm, b.norm), below, above);
   r.nonnegative = a.nonnegative && b.nonnegative;
   return r;
 }
@@ -167,38 +225,44 @@ inline Slope either(const Slope& a, const Slope& b, Interval v, double error) {
 inline Slope select(IntervalMask mask, const Slope& yes, const Slope& no) {
   if (!mask.maybe_false) return yes;
   if (!mask.maybe_true) return no;
-  return either(yes, no, hull(yes.v, no.v), magnitude(seen(yes) - seen(no)) / kUnit);
+  const double error = magnitude(seen(yes) - seen(no)) / kUnit;
+  return either(yes, no, hull(yes.v, no.v), error, error);
 }
+inline bool maybe_nan(const Slope& a) { return !(a.below < kUnbounded || a.above < kUnbounded); }
 inline Slope min(const Slope& a, const Slope& b) {
-  const Interval seen_a = seen(a), seen_b = seen(b);
+  const Interval seen_a = seen(a), seen_b = seen(b), v = min(a.v, b.v);
   if (seen_a.hi < seen_b.lo) return a;
   if (seen_b.hi < seen_a.lo) return b;
-  return either(a, b, min(a.v, b.v), std::max(a.error, b.error));
+  const double most =
+      maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((std::min(seen_a.hi, seen_b.hi) - v.lo) / kUnit);
+  return either(a, b, v, std::max(a.below, b.below), std::min(std::max(a.above, b.above), most));
 }
 inline Slope max(const Slope& a, const Slope& b) {
-  const Interval seen_a = seen(a), seen_b = seen(b);
+  const Interval seen_a = seen(a), seen_b = seen(b), v = max(a.v, b.v);
   if (seen_a.hi < seen_b.lo) return b;
   if (seen_b.hi < seen_a.lo) return a;
-  Slope r = either(a, b, max(a.v, b.v), std::max(a.error, b.error));
+  const double most =
+      maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((v.hi - std::max(seen_a.lo, seen_b.lo)) / kUnit);
+  Slope r = either(a, b, v, std::min(std::max(a.below, b.below), most), std::max(a.above, b.above));
   r.nonnegative = a.nonnegative || b.nonnegative;
   return r;
 }
 inline Slope abs(const Slope& a) {
   const Interval s = seen(a);
   const Interval slope = s.lo >= 0 ? Interval{1, 1} : s.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1};
-  Slope r = chain(a, abs(a.v), slope, a.error);
+  Slope r = chain(a, abs(a.v), slope, s.lo >= 0 ? a.below : a.error(), s.lo >= 0 ? a.above : a.error());
   r.nonnegative = true;
   return r;
 }
 inline Slope sqr(const Slope& a) {
   const Interval seen_a = seen(a);
-  const double error = times(magnitude(seen_a) + magnitude(a.v), a.error) + rounding(magnitude(sqr(seen_a)));
+  const double error = times(magnitude(seen_a) + magnitude(a.v), a.error()) + rounding(magnitude(sqr(seen_a)));
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);
   r.nonnegative = r.squares.known = true;
   r.squares.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
   // The root of the square is |a|, except for the square's rounding, whose relative error is halved by the root, and
   // underflow (below 2^-150, so the root is off by at most 2^-74).
-  r.squares.root_error = bound(a.error + magnitude(seen_a) + 0x1p-50);
+  r.squares.root_error = bound(a.error() + magnitude(seen_a) + 0x1p-50);
   return r;
 }
 // Returns a bound on the largest singular value of J, where g is J^T J.
@@ -211,19 +275,19 @@ inline Slope sqrt(const Slope& a) {
   const Interval s = seen(a), root = sqrt(a.v), line = whole_line();
   if (!(s.lo >= 0)) {  // the f32 operand may be negative, and the f32 root NaN
     Slope r = jump(root, root);
-    r.error = kUnbounded;
+    r.below = r.above = kUnbounded;
     return r;
   }
   // |sqrt(a + e) - sqrt(a)| is at most sqrt(e), and at most e divided by the sum of the roots.
   const double apart = std::sqrt(s.lo) + std::sqrt(std::max(0.0, a.v.lo));
-  const double error = std::min({apart > 0 ? a.error / apart : kUnbounded, std::sqrt(a.error / kUnit),
+  const double error = std::min({apart > 0 ? a.error() / apart : kUnbounded, std::sqrt(a.error() / kUnit),
                                  a.squares.known ? a.squares.root_error : kUnbounded});
   const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
   const double norm =
       std::min(times(a.norm, magnitude(slope)), a.squares.known ? gram_norm(a.squares.g) : kUnbounded);
   Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);
   if (!(r.norm <= norm)) r.norm = norm;
-  r.error = bound(error + rounding(magnitude(sqrt(s))));
+  r.below = r.above = bound(error + rounding(magnitude(sqrt(s))));
   r.nonnegative = true;
   return r;
 }
@@ -239,7 +303,7 @@ inline Slope distance_at(const Vec3<Slope>& p, Interval d) {
   const Interval all{-speed, speed};
   const double moved = length(seen(p.x) - p.x.v, seen(p.y) - p.y.v, seen(p.z) - p.z.v).hi;
   const double scale = std::max({1.0, magnitude(seen(sqrt(squares))), magnitude(d) + moved});
-  const double carried = std::sqrt(p.x.error * p.x.error + p.y.error * p.y.error + p.z.error * p.z.error);
+  const double carried = std::sqrt(p.x.error() * p.x.error() + p.y.error() * p.y.error() + p.z.error() * p.z.error());
   return make_slope(d, all, all, all, speed, carried + kFloatError / kUnit * scale);
 }
 

@@ -18,7 +18,7 @@ inline constexpr double kAngleLimit = 1e4;  // up to here the f32 kernels keep t
 // Returns f(a) with range v. `slope`: range of f's derivative over the exact operands; `seen_slope`, `seen_v`: ranges
 // of derivative and value over the f32 operands.
 inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_slope, Interval seen_v) {
-  return chain(a, v, slope, times(magnitude(seen_slope), a.error) + rounding(kKernelUnits * magnitude(seen_v)));
+  return chain(a, v, slope, times(magnitude(seen_slope), a.error()) + rounding(kKernelUnits * magnitude(seen_v)));
 }
 // Error of sine and cosine beyond kAngleLimit: both the exact and the f32 value are in [-1, 1], but the sine of an
 // overflowed angle is NaN.
@@ -26,13 +26,13 @@ inline double wave_error(Interval s) { return magnitude(s) < 3.4e38 ? 2 / kUnit 
 inline Slope sin(const Slope& a) {
   const Interval s = seen(a);
   Slope r = smooth(a, sin(a.v), cos(a.v), cos(s), sin(s));
-  if (!(magnitude(s) <= kAngleLimit)) r.error = wave_error(s);
+  if (!(magnitude(s) <= kAngleLimit)) r.below = r.above = wave_error(s);
   return r;
 }
 inline Slope cos(const Slope& a) {
   const Interval s = seen(a);
   Slope r = smooth(a, cos(a.v), -sin(a.v), sin(s), cos(s));
-  if (!(magnitude(s) <= kAngleLimit)) r.error = wave_error(s);
+  if (!(magnitude(s) <= kAngleLimit)) r.below = r.above = wave_error(s);
   return r;
 }
 inline Slope tan(const Slope& a) {
@@ -49,8 +49,8 @@ inline Interval asin_slope(Interval x) {
 }
 // The derivative gives no bound near 1; there, |asin a - asin b| <= pi/2 sqrt|a - b|.
 inline double asin_error(const Slope& a, Interval value) {
-  const double by_root = kPi / 2 * std::sqrt(a.error / kUnit);
-  return bound(std::min(times(magnitude(asin_slope(seen(a))), a.error), by_root)) +
+  const double by_root = kPi / 2 * std::sqrt(a.error() / kUnit);
+  return bound(std::min(times(magnitude(asin_slope(seen(a))), a.error()), by_root)) +
          rounding(kKernelUnits * magnitude(value));
 }
 inline Slope asin(const Slope& a) { return chain(a, asin(a.v), asin_slope(a.v), asin_error(a, asin(seen(a)))); }
@@ -67,18 +67,30 @@ inline Slope atan2(const Slope& y, const Slope& x) {
   const double steepest = 1 / std::sqrt(seen_square.lo);
   return make_slope(atan2(y.v, x.v), u * y.dx - w * x.dx, u * y.dy - w * x.dy, u * y.dz - w * x.dz,
                     (y.norm + x.norm) / std::sqrt(square.lo),
-                    (y.error + x.error) * steepest + rounding(kKernelUnits * magnitude(angle)));
+                    (y.error() + x.error()) * steepest + rounding(kKernelUnits * magnitude(angle)));
 }
 inline Slope exp(const Slope& a) {
   Slope r = smooth(a, exp(a.v), exp(a.v), exp(seen(a)), exp(seen(a)));
   r.nonnegative = true;
+  constexpr double kOwn = kKernelUnits * kRoundedLogarithm;
+  r.logarithm = make_logarithm(a.v, a.dx, a.dy, a.dz, a.norm, a.below + kOwn, a.above + kOwn, 0);
   return r;
+}
+// Returns the logarithm of a value by the bounds that it has kept of it.
+inline Slope kept_log(const Logarithm& a) {
+  // ln(u + tiny) - ln u is greatest where u is smallest.
+  const double tiny = a.tiny > 0 ? log_of_sum(0, log(Real{a.tiny}).v - a.v.lo) / kUnit : 0;
+  const double below = a.below, above = bound(a.above + tiny);
+  const auto kernel = [](double lo, double hi) { return rounding(kKernelUnits * magnitude(outward(lo, hi))); };
+  return make_slope(a.v, a.dx, a.dy, a.dz, a.norm, below + kernel(a.v.lo - bound(below * kUnit), a.v.hi),
+                    above + kernel(a.v.lo, a.v.hi + bound(above * kUnit)));
 }
 inline Slope log(const Slope& a) {
   const Interval s = seen(a), one{1, 1};
+  if (a.logarithm.known) return kept_log(a.logarithm);
   if (!(s.lo > 0)) {
     Slope r = jump(log(a.v), log(a.v));
-    r.error = kUnbounded;
+    r.below = r.above = kUnbounded;
     return r;
   }
   return smooth(a, log(a.v), one / a.v, one / s, log(s));
@@ -91,13 +103,13 @@ inline Slope whole_power(const Slope& x, const Slope& y, double n) {
   const double size = magnitude(pow(s, exponent));
   const double kernel = 8 * size + 8 * std::max(0.37, size > 1 ? size * log(Real{size}).v : 0.0);
   Slope r = chain(x, pow(x.v, y.v), exponent * pow(x.v, less),
-                  times(magnitude(exponent * pow(s, less)), x.error) + rounding(kernel));
+                  times(magnitude(exponent * pow(s, less)), x.error()) + rounding(kernel));
   r.nonnegative = x.nonnegative || mod(Real{n}, Real{2}).v == 0;
   return r;
 }
 inline Slope pow(const Slope& x, const Slope& y) {
   const double n = round_nearest(Real{y.v.lo}).v;
-  if (y.norm == 0 && y.error == 0 && y.v.hi - y.v.lo < 1e-9 && contains(y.v, n)) {
+  if (y.norm == 0 && y.error() == 0 && y.v.hi - y.v.lo < 1e-9 && contains(y.v, n)) {
     if (n == 0) return exactly({1, 1});
     if (n > 0 || !contains(seen(x), 0)) return whole_power(x, y, n);
   }
@@ -111,11 +123,11 @@ inline Slope pow(const Slope& x, const Slope& y) {
   // differ by at most the width of the range.
   if (x.nonnegative && y.v.lo > 0) {
     const Interval range = pow(seen(x), seen(y));
-    r.error =
+    r.below = r.above =
         bound((range.hi - range.lo) / kUnit + 8 * range.hi + 8 * range.hi * std::fabs(log(Real{range.hi + 1}).v) + 8);
     if (y.norm == 0 && y.v.lo > 1.0) {
       const Interval slope = y.v * pow(x.v, y.v - Interval{1, 1});
-      return chain(x, r.v, slope, r.error);
+      return chain(x, r.v, slope, r.error());
     }
   }
   return r;

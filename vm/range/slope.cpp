@@ -49,7 +49,7 @@ SlopeBound slope(const Code& program, glm::dvec3 lo, glm::dvec3 hi, ChoiceRange*
   *machine.first_point() = {coordinate(lo.x, hi.x, 0), coordinate(lo.y, hi.y, 1), coordinate(lo.z, hi.z, 2)};
   machine.interpret();
   const Slope& result = *machine.result();
-  return {{result.v.lo, result.v.hi}, result.norm, result.error * kUnit};
+  return {{result.v.lo, result.v.hi}, result.norm, result.error() * kUnit};
 }
 
 }  // namespace

@@ -35,6 +35,84 @@ void random_box(Random& random, dvec3& lo, dvec3& hi) {
   }
 }
 
+struct BoundCounts {
+  int boxes = 0, lipschitz = 0, error = 0;  // numbers of boxes; with a finite Lipschitz constant; with a finite error
+};
+
+// Checks the bounds of a formula in a random box at random points.
+void check_slope_bounds(const std::vector<Step>& steps, int seed, BoundCounts& counts) {
+  vm::Workspace workspace;
+  const vm::VerifiedProgram program = formula(steps);
+  Random random(seed + 7);
+  dvec3 lo, hi;
+  random_box(random, lo, hi);
+  const auto parts = subexpressions(steps);
+  const vm::SlopeBound bound = vm::evaluate_slope(program, lo, hi, workspace);
+  INFO("seed " << seed << ": " << text_of(steps) << " box " << lo.x << ' ' << lo.y << ' ' << lo.z << " to " << hi.x
+               << ' ' << hi.y << ' ' << hi.z << ": lipschitz " << bound.lipschitz << ", error " << bound.float_error);
+  REQUIRE(bound.lipschitz >= 0);
+  REQUIRE(bound.float_error >= 0);
+  ++counts.boxes, counts.lipschitz += std::isfinite(bound.lipschitz),
+      counts.error += std::isfinite(bound.float_error);
+  for (int i = 0; i < 12; ++i) {
+    const glm::vec3 p = float_point(random, lo, hi), q = float_point(random, lo, hi);
+    if (!defined_at(parts, dvec3(p), workspace) || !defined_at(parts, dvec3(q), workspace)) continue;
+    const vm::SurfaceValue at = vm::evaluate_surface(program, dvec3(p), workspace);
+    const double there = vm::evaluate_distance(program, dvec3(q), workspace);
+    const float narrow = evaluate_float(program, p, workspace);
+    INFO("at " << p.x << ' ' << p.y << ' ' << p.z << " value " << at.distance << ", in float " << narrow);
+    CHECK((at.distance >= bound.value.lo && at.distance <= bound.value.hi));
+    const double length = glm::length(at.gradient);
+    CHECK(length <= bound.lipschitz * (1 + 1e-9) + 1e-12);
+    const double change = std::abs(at.distance - there);
+    if (std::isfinite(bound.lipschitz)) {
+      CHECK(!(change > bound.lipschitz * glm::length(dvec3(p) - dvec3(q)) * (1 + 1e-9) + 1e-12));
+    }
+    if (std::isfinite(bound.float_error)) CHECK(std::abs(narrow - at.distance) <= bound.float_error);
+  }
+}
+
+// Appends a random tree of smooth unions by exponentials, their kin and hard unions, over distances from axes and
+// planes.
+void append_exponentials(Random& random, int size, std::vector<Step>& steps) {
+  static const Opcode kAxes[] = {Opcode::X, Opcode::Y, Opcode::Z};
+  static const double kSharpness[] = {0.5, 3, 11, 30, 100};
+  if (size <= 0) {
+    const int axis = random.below(3);
+    steps.push_back({kAxes[axis]});
+    if (random.chance(0.5)) {
+      steps.push_back({Opcode::Square});
+      steps.push_back({kAxes[(axis + 1) % 3]});
+      steps.push_back({Opcode::Square});
+      steps.push_back({Opcode::Add});
+      steps.push_back({Opcode::Sqrt});
+    }
+    steps.push_back({Opcode::Offset, {random.uniform(-1, 2)}});
+    return;
+  }
+  const int left = random.below(size);
+  if (random.chance(0.2)) {
+    append_exponentials(random, left, steps);
+    append_exponentials(random, size - 1 - left, steps);
+    steps.push_back({random.chance(0.5) ? Opcode::Min : Opcode::Max});
+    return;
+  }
+  const double k = kSharpness[random.below(5)] * (random.chance(0.7) ? -1 : 1);
+  append_exponentials(random, left, steps);
+  steps.push_back({Opcode::Scale, {k}});
+  steps.push_back({Opcode::Exp});
+  if (random.chance(0.2)) {
+    steps.push_back({Opcode::Constant, {random.uniform(1e-3, 2)}});
+  } else {
+    append_exponentials(random, size - 1 - left, steps);
+    steps.push_back({Opcode::Scale, {k}});
+    steps.push_back({Opcode::Exp});
+  }
+  steps.push_back({random.chance(0.8) ? Opcode::Add : random.chance(0.5) ? Opcode::Multiply : Opcode::Divide});
+  steps.push_back({Opcode::Log});
+  steps.push_back({Opcode::Scale, {1 / k}});
+}
+
 }  // namespace
 
 TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa]") {
@@ -130,41 +208,49 @@ TEST_CASE("gradients of formulas match differences", "[formula][gradient]") {
 }
 
 TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]") {
-  vm::Workspace workspace;
-  int boxes = 0, lipschitz = 0, error = 0;
-  for (int seed = 0; seed < scaled_cases(20000); ++seed) {
-    const auto steps = random_formula(seed);
-    const vm::VerifiedProgram program = formula(steps);
-    Random random(seed + 7);
-    dvec3 lo, hi;
-    random_box(random, lo, hi);
-    const auto parts = subexpressions(steps);
-    const vm::SlopeBound bound = vm::evaluate_slope(program, lo, hi, workspace);
-    INFO("seed " << seed << ": " << text_of(steps) << " box " << lo.x << ' ' << lo.y << ' ' << lo.z << " to " << hi.x
-                 << ' ' << hi.y << ' ' << hi.z << ": lipschitz " << bound.lipschitz << ", error "
-                 << bound.float_error);
-    REQUIRE(bound.lipschitz >= 0);
-    REQUIRE(bound.float_error >= 0);
-    ++boxes, lipschitz += std::isfinite(bound.lipschitz), error += std::isfinite(bound.float_error);
-    for (int i = 0; i < 12; ++i) {
-      const glm::vec3 p = float_point(random, lo, hi), q = float_point(random, lo, hi);
-      if (!defined_at(parts, dvec3(p), workspace) || !defined_at(parts, dvec3(q), workspace)) continue;
-      const vm::SurfaceValue at = vm::evaluate_surface(program, dvec3(p), workspace);
-      const double there = vm::evaluate_distance(program, dvec3(q), workspace);
-      const float narrow = evaluate_float(program, p, workspace);
-      INFO("at " << p.x << ' ' << p.y << ' ' << p.z << " value " << at.distance << ", in float " << narrow);
-      CHECK((at.distance >= bound.value.lo && at.distance <= bound.value.hi));
-      const double length = glm::length(at.gradient);
-      CHECK(length <= bound.lipschitz * (1 + 1e-9) + 1e-12);
-      const double change = std::abs(at.distance - there);
-      if (std::isfinite(bound.lipschitz)) {
-        CHECK(!(change > bound.lipschitz * glm::length(dvec3(p) - dvec3(q)) * (1 + 1e-9) + 1e-12));
-      }
-      if (std::isfinite(bound.float_error)) CHECK(std::abs(narrow - at.distance) <= bound.float_error);
-    }
+  BoundCounts counts;
+  for (int seed = 0; seed < scaled_cases(20000); ++seed) check_slope_bounds(random_formula(seed), seed, counts);
+  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
+                        << " boxes have a finite slope and float error");
+  CHECK(counts.lipschitz > counts.boxes / 4);
+}
+
+// The exponentials of such formulas underflow and overflow in float.
+TEST_CASE("bounds of sums of exponentials hold", "[formula][slope]") {
+  BoundCounts counts;
+  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
+    Random random(seed);
+    std::vector<Step> steps;
+    append_exponentials(random, 1 + random.below(4), steps);
+    check_slope_bounds(steps, seed, counts);
   }
-  WARN(lipschitz << " and " << error << " of " << boxes << " boxes have a finite slope and float error");
-  CHECK(lipschitz > boxes / 4);
+  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
+                        << " boxes have a finite slope and float error");
+  CHECK(counts.lipschitz == counts.boxes);
+  CHECK(counts.error > counts.boxes * 2 / 3);
+}
+
+TEST_CASE("a smooth union by exponentials is no steeper than its operands", "[formula][slope]") {
+  vm::Workspace workspace;
+  for (const double k : {0.1, 11.0, 30.0, 1000.0}) {
+    // -ln(exp(-k x) + exp(-k y)) / k. Without bounds of the logarithm, the sum may be 0 and the slope has no bound.
+    const auto program = formula({{Opcode::X},
+                                  {Opcode::Scale, {-k}},
+                                  {Opcode::Exp},
+                                  {Opcode::Y},
+                                  {Opcode::Scale, {-k}},
+                                  {Opcode::Exp},
+                                  {Opcode::Add},
+                                  {Opcode::Log},
+                                  {Opcode::Scale, {-1 / k}}});
+    INFO("k = " << k);
+    CHECK(vm::evaluate_slope(program, dvec3(-2), dvec3(2), workspace).lipschitz <= 1 + 1e-9);
+    CHECK(vm::evaluate_slope(program, dvec3(0), dvec3(80 / k), workspace).float_error <= 32 * 0x1p-24 * (80 / k));
+    if (k <= 100) continue;
+    // Both exponentials underflow in float.
+    CHECK(!std::isfinite(evaluate_float(program, glm::vec3(2), workspace)));
+    CHECK(!std::isfinite(vm::evaluate_slope(program, dvec3(1), dvec3(2), workspace).float_error));
+  }
 }
 
 TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") {
