@@ -370,6 +370,12 @@ HWY_INLINE T meet(const T& a, const T& b) {
   const Constant<T> zero = constant<T>(0.0);
   return length(max(zero, a), max(zero, b)) + min(zero, max(a, b));
 }
+// One of the two summands is 0, so their gradients do not add up.
+HWY_INLINE Slope meet(const Slope& a, const Slope& b) {
+  const Slope zero = constant<Slope>(0.0), outer = length(max(zero, a), max(zero, b)), inner = max(a, b);
+  const Slope sum = outer + min(zero, inner);
+  return either(outer, inner, sum.v, sum.below, sum.above);
+}
 
 // Smooth minimum and maximum are nondecreasing in both operands, so the operands' ends give the ranges. The generic
 // formula uses a and b several times and would widen the result by up to k.

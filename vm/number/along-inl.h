@@ -16,16 +16,46 @@
 #endif
 
 #include "vm/number/interval_elementary-inl.h"
+#include "vm/number/logarithm-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
+// Ranges of ln u and of its derivative, which a value u made of exponentials keeps (logarithm-inl.h). Copies skip the
+// members when not `known`, as for most values.
+struct AlongLogarithm {
+  bool known = false;
+  Interval v, d;
+
+  AlongLogarithm() {}
+  AlongLogarithm(Interval range, Interval derivative) : known(true), v(range), d(derivative) {}
+  AlongLogarithm(const AlongLogarithm& other) { *this = other; }
+  AlongLogarithm& operator=(const AlongLogarithm& other) {
+    known = other.known;
+    if (known) v = other.v, d = other.d;
+    return *this;
+  }
+};
+
 struct Along {
   using Constant = Along;
   Interval v, d;
+  AlongLogarithm logarithm = {};
 
   static inline Along broadcast(double value) { return {Interval::broadcast(value), {0, 0}}; }
 };
+
+// Returns combine(ln a, ln b), if one of the values already has a logarithm.
+template <class Combine>
+inline AlongLogarithm combined(const Along& a, const Along& b, const Combine& combine) {
+  if (!a.logarithm.known && !b.logarithm.known) return {};
+  const auto logarithm_of = [](const Along& u) {
+    if (u.logarithm.known) return u.logarithm;
+    return u.v.lo > 0 ? AlongLogarithm(log(u.v), u.d / u.v) : AlongLogarithm();
+  };
+  const AlongLogarithm of_a = logarithm_of(a), of_b = logarithm_of(b);
+  return of_a.known && of_b.known ? combine(of_a, of_b) : AlongLogarithm();
+}
 
 // Returns f(a) with range v, where f's derivative is in `slope`.
 inline Along chain(const Along& a, Interval v, Interval slope) { return {v, a.d * slope}; }
@@ -34,13 +64,24 @@ inline Along jump(const Along&, Interval v) { return {v, whole_line()}; }
 inline Along either(const Along& a, const Along& b, Interval v) { return {v, hull(a.d, b.d)}; }
 
 inline Along operator-(const Along& a) { return {-a.v, -a.d}; }
-inline Along operator+(const Along& a, const Along& b) { return {a.v + b.v, a.d + b.d}; }
+inline Along operator+(const Along& a, const Along& b) {
+  return {a.v + b.v, a.d + b.d, combined(a, b, [](const AlongLogarithm& x, const AlongLogarithm& y) {
+            return AlongLogarithm(log_of_sum(x.v, y.v), LogWeight(x.v, y.v).mean(x.d, y.d));
+          })};
+}
 inline Along operator-(const Along& a, const Along& b) { return {a.v - b.v, a.d - b.d}; }
-inline Along operator*(const Along& a, const Along& b) { return {a.v * b.v, a.v * b.d + b.v * a.d}; }
+inline Along operator*(const Along& a, const Along& b) {
+  return {a.v * b.v, a.v * b.d + b.v * a.d, combined(a, b, [](const AlongLogarithm& x, const AlongLogarithm& y) {
+            return is_normal(x.v) && is_normal(y.v) ? AlongLogarithm(x.v + y.v, x.d + y.d) : AlongLogarithm();
+          })};
+}
 inline Along operator/(const Along& a, const Along& b) {
-  if (contains(b.v, 0)) return {whole_line(), whole_line()};
+  const AlongLogarithm logarithm = combined(a, b, [](const AlongLogarithm& x, const AlongLogarithm& y) {
+    return is_normal(x.v) && is_normal(y.v) ? AlongLogarithm(x.v - y.v, x.d - y.d) : AlongLogarithm();
+  });
+  if (contains(b.v, 0)) return {whole_line(), whole_line(), logarithm};
   const Interval q = a.v / b.v;
-  return {q, (a.d - q * b.d) / b.v};
+  return {q, (a.d - q * b.d) / b.v, logarithm};
 }
 inline Along divide(const Along& a, const Along& b) { return a / b; }
 
@@ -114,8 +155,11 @@ inline Along atan2(const Along& y, const Along& x) {
   const Interval square = sqr(y.v) + sqr(x.v);
   return {angle, x.v / square * y.d - y.v / square * x.d};
 }
-inline Along exp(const Along& a) { return chain(a, exp(a.v), exp(a.v)); }
-inline Along log(const Along& a) { return a.v.lo > 0 ? chain(a, log(a.v), Interval{1, 1} / a.v) : jump(a, log(a.v)); }
+inline Along exp(const Along& a) { return {exp(a.v), a.d * exp(a.v), {a.v, a.d}}; }
+inline Along log(const Along& a) {
+  if (a.logarithm.known && is_normal(a.logarithm.v)) return {a.logarithm.v, a.logarithm.d};
+  return a.v.lo > 0 ? chain(a, log(a.v), Interval{1, 1} / a.v) : jump(a, log(a.v));
+}
 inline Along pow(const Along& x, const Along& y) {
   const Interval v = pow(x.v, y.v);
   const bool fixed = y.d.lo == 0 && y.d.hi == 0 && y.v.hi - y.v.lo < 1e-9;

@@ -66,6 +66,9 @@ inline Logarithm make_logarithm(Interval v, Interval dx, Interval dy, Interval d
   return r;
 }
 
+// True if a double with a logarithm in v is normal and finite, and so has the accuracy of its logarithm.
+inline bool is_normal(Interval v) { return v.lo > -700 && v.hi < 700; }
+
 // Returns e^a / (e^a + e^b) for difference = b - a, within 1e-14.
 inline double logistic(double difference) {
   if (difference > 0) return 1 - logistic(-difference);
@@ -76,34 +79,49 @@ inline double log_of_sum(double a, double b) {
   return std::max(a, b) + log(Real{1 + exp(Real{-std::fabs(a - b)}).v}).v;
 }
 
-// Returns the bounds of ln(u + w), given those of a = ln u and b = ln w.
-inline Logarithm log_sum(const Logarithm& a, const Logarithm& b) {
-  constexpr double kSlack = 1e-13;
-  // The range of the weight of a's gradient.
-  const double least = std::max(0.0, logistic(b.v.hi - a.v.lo) - kSlack),
-               most = std::min(1.0, logistic(b.v.lo - a.v.hi) + kSlack);
-  const auto mix = [](double weight, double x, double y) { return times(weight, x) + times(1 - weight, y); };
-  const auto mean = [&](Interval x, Interval y) {
+// The range of the weight u / (u + w) of the gradient of a = ln u in that of ln(u + w), where b = ln w.
+struct LogWeight {
+  double least, most;
+
+  LogWeight(Interval a, Interval b)
+      : least(std::max(0.0, logistic(b.hi - a.lo) - kSlack)), most(std::min(1.0, logistic(b.lo - a.hi) + kSlack)) {}
+  static double mix(double weight, double x, double y) { return times(weight, x) + times(1 - weight, y); }
+  Interval mean(Interval x, Interval y) const {
     return outward(std::min(mix(least, x.lo, y.lo), mix(most, x.lo, y.lo)),
                    std::max(mix(least, x.hi, y.hi), mix(most, x.hi, y.hi)));
-  };
-  const double lo = log_of_sum(a.v.lo, b.v.lo), hi = log_of_sum(a.v.hi, b.v.hi);
+  }
+  double mean(double x, double y) const { return std::max(mix(least, x, y), mix(most, x, y)); }
+
+  static constexpr double kSlack = 1e-13;
+};
+// Returns the range of ln(u + w), given those of a = ln u and b = ln w.
+inline Interval log_of_sum(Interval a, Interval b) {
+  constexpr double kSlack = 1e-13;
+  const double lo = log_of_sum(a.lo, b.lo), hi = log_of_sum(a.hi, b.hi);
+  return {lo - kSlack * (1 + std::fabs(lo)), hi + kSlack * (1 + std::fabs(hi))};
+}
+
+// Returns the bounds of ln(u + w), given those of a = ln u and b = ln w.
+inline Logarithm log_sum(const Logarithm& a, const Logarithm& b) {
+  const LogWeight weight(a.v, b.v);
   // If only u may underflow, the f32 sum is at least w, a share 1 - most of the exact sum.
   const bool maybe_nan = !(std::min(a.below, a.above) < kUnbounded && std::min(b.below, b.above) < kUnbounded);
-  const double below = maybe_nan ? kUnbounded
-                                 : std::min({std::max(a.below, b.below), b.below - log(Real{1 - most}).v / kUnit,
-                                             a.below - log(Real{least}).v / kUnit});
-  return make_logarithm({lo - kSlack * (1 + std::fabs(lo)), hi + kSlack * (1 + std::fabs(hi))}, mean(a.dx, b.dx),
-                        mean(a.dy, b.dy), mean(a.dz, b.dz),
-                        std::max(mix(least, a.norm, b.norm), mix(most, a.norm, b.norm)), below + kRoundedLogarithm,
+  const double below = maybe_nan
+                           ? kUnbounded
+                           : std::min({std::max(a.below, b.below), b.below - log(Real{1 - weight.most}).v / kUnit,
+                                       a.below - log(Real{weight.least}).v / kUnit});
+  return make_logarithm(log_of_sum(a.v, b.v), weight.mean(a.dx, b.dx), weight.mean(a.dy, b.dy),
+                        weight.mean(a.dz, b.dz), weight.mean(a.norm, b.norm), below + kRoundedLogarithm,
                         maybe_nan ? kUnbounded : std::max(a.above, b.above) + kRoundedLogarithm, a.tiny + b.tiny);
 }
 inline Logarithm log_product(const Logarithm& a, const Logarithm& b) {
+  if (!is_normal(a.v) || !is_normal(b.v)) return {};
   const double above = a.tiny + b.tiny > 0 ? kUnbounded : a.above + b.above;
   return make_logarithm(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
                         a.below + b.below + kRoundedLogarithm, above + kRoundedLogarithm, 0);
 }
 inline Logarithm log_quotient(const Logarithm& a, const Logarithm& b) {
+  if (!is_normal(a.v) || !is_normal(b.v)) return {};
   const double below = b.tiny > 0 ? kUnbounded : a.below + b.above, above = a.tiny > 0 ? kUnbounded : a.above + b.below;
   return make_logarithm(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm, below + kRoundedLogarithm,
                         above + kRoundedLogarithm, 0);

@@ -41,13 +41,14 @@ namespace fathom::vm::HWY_NAMESPACE {
 struct Squares {
   bool known = false;
   std::array<Interval, 6> g;  // J^T J of F: xx yy zz xy xz yz
+  double steepest;            // bound on the largest singular value of J: the root of the summed squares of the norms
   double root_error;          // bound on |sqrt(f32 value) - |F||, with an exact sqrt, in kUnit
 
   Squares() {}
   Squares(const Squares& other) { *this = other; }
   Squares& operator=(const Squares& other) {
     known = other.known;
-    if (known) g = other.g, root_error = other.root_error;
+    if (known) g = other.g, steepest = other.steepest, root_error = other.root_error;
     return *this;
   }
 };
@@ -115,6 +116,7 @@ inline Slope exactly(Interval v) {
   result.nonnegative = result.squares.known = v.lo >= 0;
   if (result.squares.known) {
     result.squares.g = {};
+    result.squares.steepest = 0;
     result.squares.root_error = bound(magnitude(sqrt(v)) + 0x1p-50);
   }
   return result;
@@ -151,6 +153,7 @@ inline Slope operator+(const Slope& a, const Slope& b) {
   r.squares.known = a.squares.known && b.squares.known;
   if (r.squares.known) {
     for (std::size_t i = 0; i < 6; ++i) r.squares.g[i] = a.squares.g[i] + b.squares.g[i];
+    r.squares.steepest = bound(std::hypot(a.squares.steepest, b.squares.steepest));
     // The roots of a and b are the lengths of two parts of F, so their errors add up like lengths: by hypot.
     r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
@@ -259,6 +262,7 @@ inline Slope sqr(const Slope& a) {
   const double error = times(magnitude(seen_a) + magnitude(a.v), a.error()) + rounding(magnitude(sqr(seen_a)));
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);
   r.nonnegative = r.squares.known = true;
+  r.squares.steepest = a.norm;
   r.squares.g = {sqr(a.dx), sqr(a.dy), sqr(a.dz), a.dx * a.dy, a.dx * a.dz, a.dy * a.dz};
   // The root of the square is |a|, except for the square's rounding, whose relative error is halved by the root, and
   // underflow (below 2^-150, so the root is off by at most 2^-74).
@@ -271,6 +275,7 @@ inline double gram_norm(const std::array<Interval, 6>& g) {
   for (std::size_t i = 0; i < 6; ++i) m[i] = magnitude(g[i]);
   return bound(std::sqrt(std::max({m[0] + m[3] + m[4], m[1] + m[3] + m[5], m[2] + m[4] + m[5]})));
 }
+inline double largest_singular(const Squares& squares) { return std::min(gram_norm(squares.g), squares.steepest); }
 inline Slope sqrt(const Slope& a) {
   const Interval s = seen(a), root = sqrt(a.v), line = whole_line();
   if (!(s.lo >= 0)) {  // the f32 operand may be negative, and the f32 root NaN
@@ -284,7 +289,7 @@ inline Slope sqrt(const Slope& a) {
                                  a.squares.known ? a.squares.root_error : kUnbounded});
   const Interval slope = root.lo > 0 ? Interval{0.5, 0.5} / root : line;
   const double norm =
-      std::min(times(a.norm, magnitude(slope)), a.squares.known ? gram_norm(a.squares.g) : kUnbounded);
+      std::min(times(a.norm, magnitude(slope)), a.squares.known ? largest_singular(a.squares) : kUnbounded);
   Slope r = make_slope(root, a.dx * slope, a.dy * slope, a.dz * slope, norm, 0);
   if (!(r.norm <= norm)) r.norm = norm;
   r.below = r.above = bound(error + rounding(magnitude(sqrt(s))));

@@ -87,7 +87,7 @@ inline Slope kept_log(const Logarithm& a) {
 }
 inline Slope log(const Slope& a) {
   const Interval s = seen(a), one{1, 1};
-  if (a.logarithm.known) return kept_log(a.logarithm);
+  if (a.logarithm.known && is_normal(a.logarithm.v)) return kept_log(a.logarithm);
   if (!(s.lo > 0)) {
     Slope r = jump(log(a.v), log(a.v));
     r.below = r.above = kUnbounded;

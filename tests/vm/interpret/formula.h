@@ -66,6 +66,49 @@ inline std::vector<Step> random_formula(std::uint64_t seed) {
   return steps;
 }
 
+// Appends a random tree of smooth unions by exponentials, their kin and hard unions, over distances from axes and
+// planes.
+inline void append_exponentials(Random& random, int size, std::vector<Step>& steps) {
+  static const vm::Opcode kAxes[] = {vm::Opcode::X, vm::Opcode::Y, vm::Opcode::Z};
+  static const double kSharpness[] = {0.5, 3, 11, 30, 100};
+  if (size <= 0) {
+    const int axis = random.below(3);
+    steps.push_back({kAxes[axis]});
+    if (random.chance(0.5)) {
+      steps.push_back({vm::Opcode::Square});
+      steps.push_back({kAxes[(axis + 1) % 3]});
+      steps.push_back({vm::Opcode::Square});
+      steps.push_back({vm::Opcode::Add});
+      steps.push_back({vm::Opcode::Sqrt});
+    }
+    steps.push_back({vm::Opcode::Offset, {random.uniform(-1, 2)}});
+    return;
+  }
+  const int left = random.below(size);
+  if (random.chance(0.2)) {
+    append_exponentials(random, left, steps);
+    append_exponentials(random, size - 1 - left, steps);
+    steps.push_back({random.chance(0.5) ? vm::Opcode::Min : vm::Opcode::Max});
+    return;
+  }
+  const double k = kSharpness[random.below(5)] * (random.chance(0.7) ? -1 : 1);
+  append_exponentials(random, left, steps);
+  steps.push_back({vm::Opcode::Scale, {k}});
+  steps.push_back({vm::Opcode::Exp});
+  if (random.chance(0.2)) {
+    steps.push_back({vm::Opcode::Constant, {random.uniform(1e-3, 2)}});
+  } else {
+    append_exponentials(random, size - 1 - left, steps);
+    steps.push_back({vm::Opcode::Scale, {k}});
+    steps.push_back({vm::Opcode::Exp});
+  }
+  steps.push_back({random.chance(0.8)   ? vm::Opcode::Add
+                   : random.chance(0.5) ? vm::Opcode::Multiply
+                                        : vm::Opcode::Divide});
+  steps.push_back({vm::Opcode::Log});
+  steps.push_back({vm::Opcode::Scale, {1 / k}});
+}
+
 inline std::string text_of(const std::vector<Step>& steps) {
   std::string text;
   for (const Step& step : steps) {

@@ -145,6 +145,25 @@ TEST_CASE("along a line: values and slopes are within the bounds, of every opcod
   CHECK(compared > 8 * bounded);
 }
 
+TEST_CASE("along a line: sums of exponentials have bounded slopes", "[along]") {
+  vm::Workspace workspace;
+  int compared = 0;
+  for (int seed = 0; seed < scaled_cases(2000); ++seed) {
+    Random random(seed);
+    std::vector<Step> steps;
+    append_exponentials(random, 1 + random.below(4), steps);
+    const vm::VerifiedProgram program = formula(steps);
+    const auto parts = subexpressions(steps);
+    const Stretch s = random_stretch(random);
+    INFO("seed " << seed << ": " << text_of(steps));
+    const vm::AlongLine line = along(program, s, workspace);
+    compared += check_samples(
+        line, s, random, 12, [&](double t) { return vm::evaluate_distance(program, s.at(t), workspace); },
+        [&](double t) { return defined_at(parts, s.at(t), workspace); });
+  }
+  CHECK(compared > scaled_cases(2000) * 6);
+}
+
 TEST_CASE("along a line: values are the judge's", "[along]") {
   vm::Workspace workspace;
   for (int seed = 1; seed < scaled_cases(600); seed += 2) {
