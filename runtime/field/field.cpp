@@ -134,6 +134,9 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
   RegionOptions chosen = options;
   chosen.room = room_of(field, compiled);
   chosen.cancellation = field.cancellation;
+  // Steps are shorter by the Lipschitz constant, up to where other limits take over.
+  constexpr double kShortest = 16;
+  chosen.evaluations *= std::clamp(compiled.lipschitz, 1.0, kShortest);
   const compiler::Box& contents = contents_of(field, compiled);
   field.regions =
       store ? store->build(compiled.surface, contents, chosen) : Regions::build(compiled.surface, contents, chosen);

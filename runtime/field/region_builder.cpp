@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/field/region_forecast.h"
 #include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
@@ -22,11 +23,13 @@ constexpr std::size_t kBytesPerWord = 24;
 // Bytes needed for cutting a program (vm/prune/specialise.h), per choice and per instruction of the program,
 // measured.
 constexpr std::size_t kBytesPerChoice = 448, kBytesPerInstruction = 64;
-// kMaxWork: maximum number of instructions evaluated by intervals, half a minute's.
-// kEvaluationsPerEnclosure: cost of evaluating an instruction by intervals, in evaluations of the instruction.
-constexpr double kMaxWork = 3e7, kEvaluationsPerEnclosure = 4096;
-// Leaves may be n times longer than normal if the whole program has at least n times this many choices.
-constexpr std::uint32_t kWorthShorter = 64;
+// Maximum number of instructions evaluated by intervals: minutes', relative to the forecast, and as a share of the
+// evaluations' cost.
+constexpr double kMaxWork = 3e8, kMaxSurprise = 3, kMaxShare = 0.5;
+// Share of the evaluations' cost that building may take even where the forecast sees nothing to build.
+constexpr double kFewShare = 0.02;
+// Maximum share of the evaluations' cost that the forecast may cost.
+constexpr double kSurveyShare = 0.04;
 // Distance outside the root up to which rays are followed, in edges of the root.
 constexpr float kOutsideSize = 64;
 
@@ -35,18 +38,13 @@ std::size_t cutting_bytes(std::size_t choices, std::size_t instructions, std::si
   return choices * kBytesPerChoice + instructions * kBytesPerInstruction + 8 * part;
 }
 
-std::size_t max_work(const RegionPlan& plan, const RegionOptions& options) {
-  return static_cast<std::size_t>(
-      std::min(kMaxWork, options.evaluations * static_cast<double>(plan.instructions) / kEvaluationsPerEnclosure));
-}
-
 }  // namespace
 
 RegionBuilder::RegionBuilder(const vm::Code& program, const RegionPlan& plan, const RegionOptions& options)
     : options_(options),
       plan_(plan),
       program_(program),
-      budget_{options.memory, max_work(plan, options)},
+      budget_{options.memory, static_cast<std::size_t>(kMaxWork)},
       regions_(std::make_shared<Regions>()) {
   regions_->whole_ = program;
   regions_->far_ = plan.far;
@@ -70,14 +68,26 @@ std::shared_ptr<const Regions> RegionBuilder::build() {
   return regions_;
 }
 
-// Splits the root. When an attempt exceeds the budget, the next one makes fewer, longer leaves with half the work.
-// Leaves that are not much shorter than the whole program are not worth their cost: an instruction of a leaf costs as
-// much as many instructions of the whole program.
+// Returns the maximum number of instructions to evaluate by intervals, given the forecast of that number.
+double RegionBuilder::max_work(double forecast) const {
+  if (!std::isfinite(options_.evaluations)) return kMaxWork;
+  const double instructions = static_cast<double>(plan_.instructions);
+  const double affordable = options_.evaluations * instructions / kCutCost;
+  return std::min({kMaxWork, kMaxShare * affordable, std::max(kMaxSurprise * forecast, kFewShare * affordable)});
+}
+
+// Splits the root. When an attempt exceeds the memory, the next one makes fewer, longer leaves with the work that is
+// left.
 bool RegionBuilder::split_root() {
+  const double survey = kCutCost * RegionSurvey::cost(regions_->tree_, plan_.instructions);
+  if (survey > kSurveyShare * options_.evaluations * static_cast<double>(plan_.instructions)) return false;
+  const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, 1};
+  const std::optional<RegionForecast> forecast = RegionSurvey(regions_->whole_part_, rules, budget_).best();
+  if (!forecast) return false;
   const float all = std::numeric_limits<float>::infinity();
-  for (; choice_factor_ == 1 || choice_factor_ * kWorthShorter <= plan_.choices;
-       choice_factor_ *= 2, budget_.max_work /= 2) {
-    if (plan_.instructions > budget_.max_work) return false;  // needed for the root alone
+  double left = max_work(forecast->work);
+  for (choice_factor_ = forecast->choice_factor; is_worth(choice_factor_, plan_.choices); choice_factor_ *= 2) {
+    budget_.max_work = static_cast<std::size_t>(left);
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->templates_ = {};
     regions_->summary_ = {};
@@ -86,6 +96,8 @@ bool RegionBuilder::split_root() {
     split_all({{{0, 0, 0}, 0, all, 0, regions_->whole_part_, 0}});
     if (budget_.interrupted) return false;
     if (!budget_.is_spent()) return true;
+    left -= static_cast<double>(budget_.work);
+    if (left < static_cast<double>(plan_.instructions)) return false;
   }
   return false;
 }

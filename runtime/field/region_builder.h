@@ -22,6 +22,7 @@ class RegionBuilder {
 
  private:
   bool split_root();
+  double max_work(double forecast) const;
   void split_all(std::vector<RegionCell> cells);
   void append_all(std::vector<RegionCell>& cells, std::vector<RegionPiece>& pieces);
   std::uint32_t append(RegionPiece& piece);

@@ -7,12 +7,6 @@
 namespace fathom::runtime {
 namespace {
 
-// Maximum number of choices in the program of a leaf of normal length.
-constexpr std::uint32_t kLeafChoices = 4;
-// A cell becomes a leaf after more than kMaxIdle levels in a row at which its part kept at least this share of its
-// length.
-constexpr double kShorterPart = 0.9;
-constexpr int kMaxIdle = 2;
 // Cells down to this level are divided among the threads.
 constexpr int kShared = 2;
 
@@ -73,19 +67,48 @@ void RegionSplitter::place_child(vm::PrunedProgram& child, double shorter, const
 
 RegionSplitter::Limits RegionSplitter::limits_of(const BoxArrays& boxes, float limit) const {
   Limits limits;
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    const float most = std::min(limit, rules_.far.cap({boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]},
-                                                      {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]}));
-    const float hi = specialiser_.hi(i), highest = std::min(hi + error_ + kCellError * std::abs(hi), most);
-    limits[i] = std::max(rules_.far.first, rules_.far.level(highest));
-  }
+  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = limit_of(boxes, i, limit);
   return limits;
+}
+
+float RegionSplitter::limit_of(const BoxArrays& boxes, std::size_t i, float limit) const {
+  const float most = std::min(limit, rules_.far.cap({boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]},
+                                                    {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]}));
+  const float hi = specialiser_.hi(i), highest = std::min(hi + error_ + kCellError * std::abs(hi), most);
+  return std::max(rules_.far.first, rules_.far.level(highest));
+}
+
+RegionSplitter::CellFacts RegionSplitter::bound_cells(const vm::PrunedProgram& part,
+                                                      const std::array<glm::dvec3, vm::kEnclosedBoxes>& points,
+                                                      int level) {
+  std::array<CellIndex, vm::kEnclosedBoxes> cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      cells[i][static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(points[i][axis] * (1u << level));
+    }
+  }
+  const BoxArrays boxes = boxes_of(cells, level);
+  specialiser_.enclose_choices(part, boxes.view(), workspace_);
+  CellFacts facts{};
+  std::array<bool, vm::kEnclosedBoxes> seen{};
+  for (std::size_t begin = 0; begin < cells.size(); ++begin) {
+    if (seen[begin]) continue;
+    const float limit = limit_of(boxes, begin, std::numeric_limits<float>::infinity());
+    specialiser_.resolve(-std::numeric_limits<float>::infinity(), limit, error_);
+    for (std::size_t i = begin; i < cells.size(); ++i) {
+      if (seen[i] || limit_of(boxes, i, std::numeric_limits<float>::infinity()) != limit) continue;
+      seen[i] = true;
+      facts.far[i] = is_far(i, limit);
+      facts.choices[i] = specialiser_.choices_left(i);
+    }
+  }
+  return facts;
 }
 
 RegionSplitter::Children RegionSplitter::make_far(const Limits& limits, std::uint32_t first) {
   Children far;
   for (std::uint32_t i = 0; i < far.size(); ++i) {
-    far[i] = specialiser_.lo(i) * (1 - kCellError) - error_ >= limits[i];
+    far[i] = is_far(i, limits[i]);
     if (!far[i]) continue;
     piece_->nodes[first + i] = make_node(Kind::Far, 0, limits[i]);
     ++piece_->summary.far;
@@ -109,12 +132,20 @@ void RegionSplitter::make_parts(const Limits& limits, int level, std::uint32_t f
 }
 
 BoxArrays RegionSplitter::children_of(const CellIndex& at, int level) {
+  std::array<CellIndex, vm::kEnclosedBoxes> cells;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    cells[i] = {2 * at[0] + (i & 1), 2 * at[1] + (i >> 1 & 1), 2 * at[2] + (i >> 2 & 1)};
+  }
+  return boxes_of(cells, level);
+}
+
+BoxArrays RegionSplitter::boxes_of(const std::array<CellIndex, vm::kEnclosedBoxes>& cells, int level) {
   BoxArrays boxes;
   const double size = static_cast<double>(rules_.tree.size), edge = size / (1u << level), margin = size * kCellMargin;
   float largest = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < vm::kEnclosedBoxes; ++i) {
-      const double lo = static_cast<double>(rules_.tree.lo[axis]) + edge * (2.0 * at[axis] + (i >> axis & 1));
+      const double lo = static_cast<double>(rules_.tree.lo[axis]) + edge * cells[i][axis];
       boxes.lo[axis][i] = static_cast<float>(lo - margin), boxes.hi[axis][i] = static_cast<float>(lo + edge + margin);
       largest = std::max({largest, -boxes.lo[axis][i], boxes.hi[axis][i]});
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,12 @@ struct SplitRules {
   std::uint32_t choice_factor;  // factor on the choices that a leaf may have
 };
 
+// kLeafChoices: maximum number of choices in the program of a leaf of normal length. A cell becomes a leaf after more
+// than kMaxIdle levels in a row at which its part kept at least a share kShorterPart of its length.
+inline constexpr std::uint32_t kLeafChoices = 4;
+inline constexpr double kShorterPart = 0.9;
+inline constexpr int kMaxIdle = 2;
+
 // Splits cells, on one thread.
 class RegionSplitter {
  public:
@@ -71,6 +78,16 @@ class RegionSplitter {
 
   // Makes the cell's descendants, in an empty piece.
   void run(const RegionCell& cell, RegionPiece& piece);
+
+  // Facts about some cells of a level: [cell] true if all its values round to one; number of choices that its part
+  // has.
+  struct CellFacts {
+    std::array<bool, vm::kEnclosedBoxes> far;
+    std::array<std::uint32_t, vm::kEnclosedBoxes> choices;
+  };
+  // Bounds the cells around `points`, which are in units of the root's edge, from its corner.
+  CellFacts bound_cells(const vm::PrunedProgram& part, const std::array<glm::dvec3, vm::kEnclosedBoxes>& points,
+                        int level);
 
  private:
   using Node = Regions::Node;
@@ -94,6 +111,12 @@ class RegionSplitter {
   void make_parts(const Limits& limits, int level, std::uint32_t first, Children& done, Parts& parts);
   // Returns the boxes of a cell's children. Also sets error_.
   BoxArrays children_of(const CellIndex& at, int level);
+  // Returns the boxes of cells of a level. Also sets error_.
+  BoxArrays boxes_of(const std::array<CellIndex, vm::kEnclosedBoxes>& cells, int level);
+  // True if all values in box i, which has this limit, round to one.
+  bool is_far(std::size_t i, float limit) const { return specialiser_.lo(i) * (1 - kCellError) - error_ >= limit; }
+  // Returns the limit up to which values in box i matter.
+  float limit_of(const BoxArrays& boxes, std::size_t i, float limit) const;
   // Returns the bytes of a piece's leaves, without the nodes.
   static std::size_t bytes_of(const RegionPiece& piece);
   void make_leaf(const vm::PrunedProgram& part, float limit, std::uint32_t node);

@@ -18,10 +18,10 @@ using runtime::RegionStore;
 // A cube of balls, large enough for regions. `first` moves the first ball.
 compiler::CompiledScene balls(double first, double light = 1) {
   std::string objects;
-  for (int i = 0; i < 343; ++i) {
-    const double x = i % 7 + (i == 0 ? first : 0);
+  for (int i = 0; i < 729; ++i) {
+    const double x = i % 9 + (i == 0 ? first : 0);
     objects += std::string(i > 0 ? "," : "") + R"({"type": "sphere", "radius": 0.3, "translate": [)" +
-               std::to_string(x) + "," + std::to_string(i / 7 % 7) + "," + std::to_string(i / 49) + "]}";
+               std::to_string(x) + "," + std::to_string(i / 9 % 9) + "," + std::to_string(i / 81) + "]}";
   }
   return test::compiled(
       R"({"version": 1, "camera": {"position": [3, 3, 20], "target": [3, 3, 3]}, "film": {"width": 32, "height": 24},

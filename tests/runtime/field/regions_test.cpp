@@ -312,8 +312,8 @@ TEST_CASE("regions: rays meet what they meet without them, to the bit", "[region
 // The middle of an image that is large enough for regions to pay off.
 RenderOptions part_of_picture() {
   RenderOptions options;
-  options.width = 192, options.height = 128, options.spp = 2, options.threads = 1;
-  options.crop = {88, 60, 104, 68};
+  options.width = 768, options.height = 512, options.spp = 2, options.threads = 1;
+  options.crop = {376, 252, 392, 260};
   return options;
 }
 
@@ -321,7 +321,7 @@ RenderOptions part_of_picture() {
 // more. Images with large regions, small ones and none were different.
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
           "[regions]") {
-  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
+  const compiler::CompiledScene scene = test::compiled(many(1200, true, true, true));
   const std::size_t freely = with_regions(scene).regions->summary().bytes;
   RenderOptions options = part_of_picture();
   options.regions = false;
@@ -347,7 +347,7 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
 // Regression: a time limit did not stop the building of regions, which takes up to half a minute. Another limit gave
 // other regions, so a resumed render counted other costs.
 TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[regions]") {
-  const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
+  const compiler::CompiledScene scene = test::compiled(many(1200, true, true, true));
   RenderOptions options = part_of_picture();
   const RenderResult freely = render(scene, options);
   options.time_limit = 1000;

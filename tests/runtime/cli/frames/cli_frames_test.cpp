@@ -378,7 +378,7 @@ film (width = 32, height = 24, fps = 8)
 render (spp = 16)
 camera (position = [12*cos(time) + 3, 6, 12*sin(time) + 3], target = [3, 3, 3])
 background [1, 1, 1]
-object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), floor(i/49)])]
+object [for i in 0..729: sphere(0.3).translate([mod(i, 9), mod(floor(i/9), 9), floor(i/81)])]
 )");
   const Result turntable = folder.run("render many.fathom --frames 0:4 -o a.png --stats-json stats.json");
   INFO(turntable.err);

@@ -118,7 +118,7 @@ film (width = 32, height = 24, fps = 8)
 render (spp = 16)
 camera (position = [12*cos(time) + 3, 6, 12*sin(time) + 3], target = [3, 3, 3], shutter = 0.5)
 background [1, 1, 1]
-object [for i in 0..343: sphere(0.3).translate([mod(i, 7), mod(floor(i/7), 7), floor(i/49)])]
+object [for i in 0..729: sphere(0.3).translate([mod(i, 9), mod(floor(i/9), 9), floor(i/81)])]
 )");
   REQUIRE(folder.run("render many.fathom -o a.png -q --stats-json stats.json").code == 0);
   CHECK_THAT(folder.read("stats.json"), Contains("\"regions_reused\": 7,"));

@@ -1,0 +1,92 @@
+#include "runtime/field/region_forecast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fathom::runtime {
+namespace {
+
+constexpr std::size_t kSamples = vm::kEnclosedBoxes;
+// Leaves may be n times longer than normal if the whole program has at least n times this many choices.
+constexpr std::size_t kWorthShorter = 64;
+// Regions must save at least this share of the evaluations' cost.
+constexpr double kLeastGain = 0.5;
+
+// Returns the i-th of points that lie evenly in the unit cube: multiples of irrational numbers, modulo 1.
+glm::dvec3 sample_point(std::size_t i) {
+  const double n = static_cast<double>(i) + 0.5;
+  const auto part = [n](double number) { return number * n - std::floor(number * n); };
+  return {part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703)};
+}
+
+}  // namespace
+
+RegionSurvey::RegionSurvey(const vm::PrunedProgram& whole, const SplitRules& rules, RegionBudget& budget)
+    : options_(rules.options),
+      levels_(rules.tree.levels),
+      choices_(std::max(1.0, static_cast<double>(whole.choices))),
+      instructions_(static_cast<double>(whole.sources.size())),
+      cells_(static_cast<std::size_t>(levels_) + 1) {
+  RegionSplitter splitter(rules, budget);
+  std::array<glm::dvec3, kSamples> points;
+  for (std::size_t i = 0; i < kSamples; ++i) points[i] = sample_point(i);
+  for (int level = 0; level <= levels_; ++level) {
+    const RegionSplitter::CellFacts facts = splitter.bound_cells(whole, points, level);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      cells_[static_cast<std::size_t>(level)][i] = {facts.far[i], facts.choices[i]};
+    }
+  }
+}
+
+double RegionSurvey::cost(const RegionTree& tree, std::size_t instructions) {
+  return static_cast<double>(tree.levels + 1) * static_cast<double>(instructions);
+}
+
+double RegionSurvey::length_of(std::uint32_t choices) const {
+  return std::max(1.0, instructions_ * (choices + 1.0) / (choices_ + 1.0));
+}
+
+// Follows each sample point down to its leaf, by the rules of the splitter.
+RegionForecast RegionSurvey::forecast(std::uint32_t choice_factor) const {
+  RegionForecast result{choice_factor, 0, 0};
+  double leaves = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    int unshortened = 0;
+    double cells = 1.0 / kSamples, parent = instructions_;  // cells: that the sample stands for
+    for (int level = 0; level <= levels_; ++level, cells *= 8) {
+      const Cell& cell = cells_[static_cast<std::size_t>(level)][i];
+      if (cell.far) break;
+      const double length = length_of(cell.choices);
+      unshortened = length < kShorterPart * parent || level <= options_.room ? 0 : unshortened + 1;
+      parent = length;
+      if (cell.choices <= choice_factor * kLeafChoices || level == levels_ || unshortened > kMaxIdle) {
+        result.length += length, ++leaves;
+        break;
+      }
+      result.work += cells * length;
+    }
+  }
+  if (leaves > 0) result.length /= leaves;
+  return result;
+}
+
+bool is_worth(std::uint32_t choice_factor, std::size_t choices) {
+  return choice_factor == 1 || choice_factor * kWorthShorter <= choices;
+}
+
+std::optional<RegionForecast> RegionSurvey::best() const {
+  const bool limited = std::isfinite(options_.evaluations) && !options_.always;
+  std::optional<RegionForecast> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t factor = 1; is_worth(factor, static_cast<std::size_t>(choices_)); factor *= 2) {
+    const RegionForecast found = forecast(factor);
+    const double each = kLookupCost + kLeafCost * found.length;
+    const double cost = limited ? kCutCost * found.work + options_.evaluations * each : each;
+    if (cost < least) best = found, least = cost;
+  }
+  if (limited && least > (1 - kLeastGain) * options_.evaluations * instructions_) return std::nullopt;
+  return best;
+}
+
+}  // namespace fathom::runtime

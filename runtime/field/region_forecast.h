@@ -1,0 +1,58 @@
+// Forecast of what an octree of regions costs and saves, from a sample of its cells. Cutting a program to a cell costs
+// as much as evaluating it at a thousand points, so regions are built only where the forecast says that they pay.
+// Tested by: tests/runtime/field/region_forecast_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "runtime/field/region_splitter.h"
+#include "runtime/field/regions.h"
+
+namespace fathom::runtime {
+
+// A tree whose leaves have at most `choice_factor` times the normal number of choices.
+struct RegionForecast {
+  std::uint32_t choice_factor;
+  double work;    // instructions evaluated by intervals to build the tree
+  double length;  // mean instructions of a leaf that is not far
+};
+
+// Costs in evaluations of one instruction of the whole program at one point, all lanes full; measured.
+// kCutCost: of an instruction that is evaluated by intervals, in the cells of a register, and cut.
+// kLookupCost, kLeafCost: of an evaluation in a leaf, and of an instruction there, with few points per program.
+inline constexpr double kCutCost = 2000, kLookupCost = 50, kLeafCost = 40;
+
+// True if leaves of a program of so many choices may be `choice_factor` times longer than normal.
+bool is_worth(std::uint32_t choice_factor, std::size_t choices);
+
+class RegionSurvey {
+ public:
+  // Bounds the cells around sample points, on every level.
+  RegionSurvey(const vm::PrunedProgram& whole, const SplitRules& rules, RegionBudget& budget);
+
+  RegionForecast forecast(std::uint32_t choice_factor) const;
+
+  // Returns the forecast with the least cost of building and evaluating together, or nothing if options.evaluations
+  // evaluations do not repay the building (unless options.always).
+  std::optional<RegionForecast> best() const;
+
+  // Instructions that the survey itself evaluates by intervals.
+  static double cost(const RegionTree& tree, std::size_t instructions);
+
+ private:
+  struct Cell {
+    bool far;
+    std::uint32_t choices;  // left in the cell's part
+  };
+  double length_of(std::uint32_t choices) const;
+
+  const RegionOptions& options_;
+  const int levels_;
+  const double choices_, instructions_;                              // of the whole program
+  std::vector<std::array<Cell, vm::kEnclosedBoxes>> cells_;  // [level][sample]
+};
+
+}  // namespace fathom::runtime
