@@ -79,14 +79,16 @@ double RegionBuilder::max_work(double forecast) const {
 // Splits the root. When an attempt exceeds the memory, the next one makes fewer, longer leaves with the work that is
 // left.
 bool RegionBuilder::split_root() {
-  const double survey = kCutCost * RegionSurvey::cost(regions_->tree_, plan_.instructions);
-  if (survey > kSurveyShare * options_.evaluations * static_cast<double>(plan_.instructions)) return false;
+  const double survey_cost = kCutCost * RegionSurvey::cost(regions_->tree_, plan_.instructions);
+  if (survey_cost > kSurveyShare * options_.evaluations * static_cast<double>(plan_.instructions)) return false;
   const SplitRules rules{options_, regions_->tree_, regions_->far_, *regions_->constants_, 1};
-  const std::optional<RegionForecast> forecast = RegionSurvey(regions_->whole_part_, rules, budget_).best();
+  const RegionSurvey survey(regions_->whole_part_, rules, budget_);
+  const std::optional<RegionForecast> forecast = survey.best();
   if (!forecast) return false;
   const float all = std::numeric_limits<float>::infinity();
   double left = max_work(forecast->work);
   for (choice_factor_ = forecast->choice_factor; is_worth(choice_factor_, plan_.choices); choice_factor_ *= 2) {
+    if (!survey.pays(survey.forecast(choice_factor_))) return false;
     budget_.max_work = static_cast<std::size_t>(left);
     regions_->nodes_.assign(1, {});
     regions_->pool_ = {}, regions_->templates_ = {};

@@ -75,18 +75,23 @@ bool is_worth(std::uint32_t choice_factor, std::size_t choices) {
   return choice_factor == 1 || choice_factor * kWorthShorter <= choices;
 }
 
+// Returns the cost of building and evaluating, or that of an evaluation if building does not count.
+double RegionSurvey::cost_of(const RegionForecast& forecast) const {
+  const double each = kLookupCost + kLeafCost * forecast.length;
+  return is_limited() ? kCutCost * forecast.work + options_.evaluations * each : each;
+}
+
+bool RegionSurvey::pays(const RegionForecast& forecast) const {
+  return !is_limited() || cost_of(forecast) <= (1 - kLeastGain) * options_.evaluations * instructions_;
+}
+
 std::optional<RegionForecast> RegionSurvey::best() const {
-  const bool limited = std::isfinite(options_.evaluations) && !options_.always;
   std::optional<RegionForecast> best;
-  double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t factor = 1; is_worth(factor, static_cast<std::size_t>(choices_)); factor *= 2) {
     const RegionForecast found = forecast(factor);
-    const double each = kLookupCost + kLeafCost * found.length;
-    const double cost = limited ? kCutCost * found.work + options_.evaluations * each : each;
-    if (cost < least) best = found, least = cost;
+    if (!best || cost_of(found) < cost_of(*best)) best = found;
   }
-  if (limited && least > (1 - kLeastGain) * options_.evaluations * instructions_) return std::nullopt;
-  return best;
+  return best && pays(*best) ? best : std::nullopt;
 }
 
 }  // namespace fathom::runtime

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -39,6 +40,9 @@ class RegionSurvey {
   // evaluations do not repay the building (unless options.always).
   std::optional<RegionForecast> best() const;
 
+  // True if options.evaluations evaluations repay the building of this tree, or need not.
+  bool pays(const RegionForecast& forecast) const;
+
   // Instructions that the survey itself evaluates by intervals.
   static double cost(const RegionTree& tree, std::size_t instructions);
 
@@ -48,6 +52,8 @@ class RegionSurvey {
     std::uint32_t choices;  // left in the cell's part
   };
   double length_of(std::uint32_t choices) const;
+  bool is_limited() const { return std::isfinite(options_.evaluations) && !options_.always; }
+  double cost_of(const RegionForecast& forecast) const;
 
   const RegionOptions& options_;
   const int levels_;
