@@ -1,5 +1,6 @@
 #include "runtime/field/field.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "runtime/field/region_plan.h"
 #include "runtime/field/region_store.h"
+#include "runtime/sampling/even_steps.h"
 #include "vm/program/check.h"
 #include "vm/program/convexity.h"
 
@@ -22,9 +24,9 @@ struct Line {
 std::optional<Line> line_at_surface(const compiler::CompiledField& scene, int i, double near,
                                     vm::Workspace& workspace) {
   constexpr int kSteps = 64;
-  const auto part = [i](double number) { return number * i - std::floor(number * i); };
-  const glm::dvec3 share(part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703));
-  const glm::dvec3 aim(part(0.4503258693318263), part(0.3688964747453183), part(0.3021964744936211));
+  constexpr glm::dvec3 kAimSteps(0.4503258693318263, 0.3688964747453183, 0.3021964744936211);
+  const double n = i;
+  const glm::dvec3 share = glm::fract(n * kEvenSteps), aim = glm::fract(n * kAimSteps);
   Line line{scene.contents.lo + share * (scene.contents.hi - scene.contents.lo), glm::normalize(aim - 0.5)};
   for (int step = 0; step < kSteps; ++step) {
     const double distance = std::abs(vm::evaluate_distance(scene.distance, line.origin, workspace));

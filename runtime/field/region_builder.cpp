@@ -87,7 +87,7 @@ bool RegionBuilder::split_root() {
   if (!forecast) return false;
   const float all = std::numeric_limits<float>::infinity();
   double left = max_work(forecast->work);
-  for (choice_factor_ = forecast->choice_factor; is_worth(choice_factor_, plan_.choices); choice_factor_ *= 2) {
+  for (choice_factor_ = forecast->choice_factor; allows_leaves(choice_factor_, plan_.choices); choice_factor_ *= 2) {
     if (!survey.pays(survey.forecast(choice_factor_))) return false;
     budget_.max_work = static_cast<std::size_t>(left);
     regions_->nodes_.assign(1, {});

@@ -1,8 +1,9 @@
 #include "runtime/field/region_forecast.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <glm/common.hpp>
+
+#include "runtime/sampling/even_steps.h"
 
 namespace fathom::runtime {
 namespace {
@@ -12,13 +13,6 @@ constexpr std::size_t kSamples = vm::kEnclosedBoxes;
 constexpr std::size_t kWorthShorter = 64;
 // Regions must save at least this share of the evaluations' cost.
 constexpr double kLeastGain = 0.5;
-
-// Returns the i-th of points that lie evenly in the unit cube: multiples of irrational numbers, modulo 1.
-glm::dvec3 sample_point(std::size_t i) {
-  const double n = static_cast<double>(i) + 0.5;
-  const auto part = [n](double number) { return number * n - std::floor(number * n); };
-  return {part(0.8191725133961645), part(0.6710436067037893), part(0.5497004779019703)};
-}
 
 }  // namespace
 
@@ -30,7 +24,7 @@ RegionSurvey::RegionSurvey(const vm::PrunedProgram& whole, const SplitRules& rul
       cells_(static_cast<std::size_t>(levels_) + 1) {
   RegionSplitter splitter(rules, budget);
   std::array<glm::dvec3, kSamples> points;
-  for (std::size_t i = 0; i < kSamples; ++i) points[i] = sample_point(i);
+  for (std::size_t i = 0; i < kSamples; ++i) points[i] = glm::fract((static_cast<double>(i) + 0.5) * kEvenSteps);
   for (int level = 0; level <= levels_; ++level) {
     const RegionSplitter::CellFacts facts = splitter.bound_cells(whole, points, level);
     for (std::size_t i = 0; i < kSamples; ++i) {
@@ -71,7 +65,7 @@ RegionForecast RegionSurvey::forecast(std::uint32_t choice_factor) const {
   return result;
 }
 
-bool is_worth(std::uint32_t choice_factor, std::size_t choices) {
+bool allows_leaves(std::uint32_t choice_factor, std::size_t choices) {
   return choice_factor == 1 || choice_factor * kWorthShorter <= choices;
 }
 
@@ -87,7 +81,7 @@ bool RegionSurvey::pays(const RegionForecast& forecast) const {
 
 std::optional<RegionForecast> RegionSurvey::best() const {
   std::optional<RegionForecast> best;
-  for (std::uint32_t factor = 1; is_worth(factor, static_cast<std::size_t>(choices_)); factor *= 2) {
+  for (std::uint32_t factor = 1; allows_leaves(factor, static_cast<std::size_t>(choices_)); factor *= 2) {
     const RegionForecast found = forecast(factor);
     if (!best || cost_of(found) < cost_of(*best)) best = found;
   }

@@ -1,6 +1,6 @@
-// Forecast of what an octree of regions costs and saves, from a sample of its cells. Cutting a program to a cell costs
-// as much as evaluating it at a thousand points, so regions are built only where the forecast says that they pay.
-// Tested by: tests/runtime/field/region_forecast_test.cpp
+// Forecast of what an octree of regions costs and saves, from a sample of its cells. Cutting a program to a cell
+// costs as much as evaluating it at two thousand points, so regions are built only where the forecast says that they
+// pay. Tested by: tests/runtime/field/region_forecast_test.cpp
 #pragma once
 
 #include <array>
@@ -21,13 +21,14 @@ struct RegionForecast {
   double length;  // mean instructions of a leaf that is not far
 };
 
-// Costs in evaluations of one instruction of the whole program at one point, all lanes full; measured.
+// Costs in evaluations of one instruction of the whole program at one point, all lanes full. Measured on scenes of
+// scripts/region-costs and bench/culling.cpp, between which they vary by a factor of 2 to 4.
 // kCutCost: of an instruction that is evaluated by intervals, in the cells of a register, and cut.
 // kLookupCost, kLeafCost: of an evaluation in a leaf, and of an instruction there, with few points per program.
 inline constexpr double kCutCost = 2000, kLookupCost = 50, kLeafCost = 40;
 
 // True if leaves of a program of so many choices may be `choice_factor` times longer than normal.
-bool is_worth(std::uint32_t choice_factor, std::size_t choices);
+bool allows_leaves(std::uint32_t choice_factor, std::size_t choices);
 
 class RegionSurvey {
  public:

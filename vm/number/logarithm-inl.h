@@ -53,16 +53,15 @@ inline constexpr double kRoundedLogarithm = 1.001, kSubnormal = 0x1p-126;
 // Returns the bounds of an f32 result, given its errors without underflow and overflow.
 inline Logarithm make_logarithm(Interval v, Interval dx, Interval dy, Interval dz, double norm, double below,
                                 double above, double tiny) {
-  // Above this logarithm, subnormal errors are relative errors of less than a unit.
-  constexpr double kFarAbove = -66;
+  // Above this logarithm, so many subnormal errors are a relative error of less than a unit.
+  constexpr double kFarAbove = -66, kMostTiny = 64 * kSubnormal;
   Logarithm r;
   r.known = true;
   r.v = v, r.dx = dx, r.dy = dy, r.dz = dz;
   r.norm = bound(norm), r.below = bound(below), r.above = bound(above), r.tiny = tiny;
   if (!(v.lo - r.below * kUnit > kLeastLogarithm)) r.below = kUnbounded, r.tiny += kSubnormal;
   if (!(v.hi + r.above * kUnit < kLargestLogarithm)) r.above = kUnbounded;
-  constexpr double kMostTiny = 64 * kSubnormal;
-  if (r.tiny > 0 && r.tiny <= kMostTiny && v.lo > kFarAbove) r.above += 64, r.tiny = 0;
+  if (r.tiny > 0 && r.tiny <= kMostTiny && v.lo > kFarAbove) r.above += 1, r.tiny = 0;
   return r;
 }
 
@@ -74,8 +73,10 @@ inline double logistic(double difference) {
   if (difference > 0) return 1 - logistic(-difference);
   return 1 / (1 + exp(Real{difference}).v);
 }
+inline constexpr double kLn2 = 0.6931471805599453;
 // Returns ln(e^a + e^b), within 1e-14 of the larger.
 inline double log_of_sum(double a, double b) {
+  if (a == b) return a + kLn2;  // also if both are infinite
   return std::max(a, b) + log(Real{1 + exp(Real{-std::fabs(a - b)}).v}).v;
 }
 
@@ -87,12 +88,14 @@ struct LogWeight {
       : least(std::max(0.0, logistic(b.hi - a.lo) - kSlack)), most(std::min(1.0, logistic(b.lo - a.hi) + kSlack)) {}
   static double mix(double weight, double x, double y) { return times(weight, x) + times(1 - weight, y); }
   Interval mean(Interval x, Interval y) const {
-    return outward(std::min(mix(least, x.lo, y.lo), mix(most, x.lo, y.lo)),
-                   std::max(mix(least, x.hi, y.hi), mix(most, x.hi, y.hi)));
+    const auto slack = [](double a, double b) { return kRoundings * (std::fabs(a) + std::fabs(b)); };
+    return outward(std::min(mix(least, x.lo, y.lo), mix(most, x.lo, y.lo)) - slack(x.lo, y.lo),
+                   std::max(mix(least, x.hi, y.hi), mix(most, x.hi, y.hi)) + slack(x.hi, y.hi));
   }
   double mean(double x, double y) const { return std::max(mix(least, x, y), mix(most, x, y)); }
 
-  static constexpr double kSlack = 1e-13;
+  // kSlack: more than the error of logistic(). kRoundings: more than that of mix(), relative to its operands.
+  static constexpr double kSlack = 1e-13, kRoundings = 1e-15;
 };
 // Returns the range of ln(u + w), given those of a = ln u and b = ln w.
 inline Interval log_of_sum(Interval a, Interval b) {

@@ -80,7 +80,7 @@ inline Interval seen(const Slope& a) {
 }
 
 // Returns the bound on exact value - rounded f32 value, or the reverse, given the bound before the rounding, for a
-// value in v. A rounding takes no value that is above an exact one below it by more than the exact one's rounding.
+// value in v. Rounding is monotonic, so values on the other side of the exact one do not count.
 inline double rounded_below(Interval v, double below) {
   return below + rounding(magnitude(outward(v.lo - bound(below * kUnit), v.hi)));
 }

@@ -34,7 +34,7 @@ bool builds(const compiler::CompiledScene& scene, double evaluations) {
   return field.regions != nullptr;
 }
 
-const std::string kUnion = R"("union")", kSmooth = R"("smooth_union", "k": 0.02)";
+const std::string kUnion = R"("union")";
 
 TEST_CASE("region forecast: scattered bodies have regions in all pictures except the smallest", "[regions]") {
   const compiler::CompiledScene scene = balls(2000, 0.02, kUnion);
@@ -51,7 +51,9 @@ TEST_CASE("region forecast: bodies that overlap everywhere have regions in large
 }
 
 TEST_CASE("region forecast: leaves that are as expensive as the whole program do not pay", "[regions]") {
-  CHECK_FALSE(builds(balls(60, 0.5, kSmooth), 1e8));
+  // All balls blend with each other everywhere, so no cell has a part that is shorter.
+  CHECK_FALSE(builds(balls(600, 0.5, R"("smooth_union", "k": 4)"), 1e8));
+  CHECK(builds(balls(600, 0.02, R"("smooth_union", "k": 0.02)"), 1e8));
 }
 
 TEST_CASE("region forecast: without limits the leaves have the normal number of choices", "[regions]") {
@@ -64,7 +66,8 @@ TEST_CASE("region forecast: without limits the leaves have the normal number of 
   for (int i = 0; i < 200; ++i) {
     longest = std::max<std::size_t>(longest, field.regions->region(random.in_box(1)).part.choices);
   }
-  CHECK(longest <= 2 * runtime::kLeafChoices);
+  CAPTURE(longest);
+  CHECK(longest <= runtime::kLeafChoices);
 }
 
 }  // namespace
