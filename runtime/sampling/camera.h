@@ -55,6 +55,7 @@ class Camera {
   glm::dvec3 up() const { return up_; }
   glm::dvec3 forward() const { return forward_; }
   glm::dvec2 half_extent() const { return half_; }
+  glm::dvec2 size() const { return size_; }  // of the image, pixels
   compiler::Camera::Projection projection() const { return projection_; }
 
  private:

@@ -33,13 +33,18 @@ class Filter {
   explicit Filter(FilterKind kind = FilterKind::Box, std::optional<double> width = std::nullopt);
 
   // u in [0,1)^2. Monotonic in each coordinate, so that stratified u give stratified offsets.
-  FilterSample sample(glm::vec2 u) const;
+  FilterSample sample(glm::vec2 u) const {
+    // Shortcut for a constant: the same as below, at a fraction of its time.
+    if (kind_ == FilterKind::Box) return {(u - 0.5f) * static_cast<float>(2 * radius_), 1};
+    return sample_density(u);
+  }
 
   double radius() const { return radius_; }  // half the support's width, pixels
 
  private:
   static constexpr int kCells = 1024;  // of equal width from the centre to the support's end
 
+  FilterSample sample_density(glm::vec2 u) const;
   double invert_cdf(double share) const;
 
   FilterKind kind_;

@@ -144,10 +144,7 @@ class Sampler {
       : Sampler(PixelKey({SamplerKind::Independent, seed, 1}, x, y), sample) {}
 
   // Assigns the numbers drawn next to the bounce, counted from 0.
-  void start_bounce(int bounce) {
-    const std::uint32_t pairs = 2 + static_cast<std::uint32_t>(bounce) * kPairsPerBounce;
-    dimension_ = kind_ == SamplerKind::Independent ? 2 * pairs : pairs;
-  }
+  void start_bounce(int bounce) { dimension_ = bounce_dimension(kind_, bounce); }
 
   // Returns a number in [0,1), a multiple of 2^-24.
   float next() {
@@ -169,6 +166,13 @@ class Sampler {
   }
 
  private:
+  friend class SamplerRows;
+
+  // Returns the value of dimension_ at the beginning of a bounce.
+  static std::uint32_t bounce_dimension(SamplerKind kind, int bounce) {
+    const std::uint32_t pairs = 2 + static_cast<std::uint32_t>(bounce) * kPairsPerBounce;
+    return kind == SamplerKind::Independent ? 2 * pairs : pairs;
+  }
   static float to_unit(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
   float next_independent() { return static_cast<float>(mix64(key_ + kGoldenGamma * ++dimension_) >> 40) * 0x1p-24f; }

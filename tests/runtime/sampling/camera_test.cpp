@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "runtime/sampling/camera_lanes.h"
 #include "runtime/sampling/sampler.h"
 #include "vm/number/real.h"
 
@@ -81,6 +82,26 @@ TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "
   const double sy = (1 - 2 * 11.2 / 20) * (vm::real::tan(M_PI / 4) * (20.0 / 30));
   CHECK(plain.direction ==
         glm::normalize(glm::dvec3(1, 0, 0) * sx + glm::dvec3(0, 1, 0) * sy + glm::dvec3(0, 0, -1)));
+}
+
+TEST_CASE("camera: directions in lanes are those of each ray, bit for bit", "[runtime]") {
+  compiler::Camera settings = facing_minus_z();
+  settings.position = {1.25, -3.5, 7.1};
+  settings.target = {0.3, 0.2, -0.1};
+  const Camera camera(settings, 317, 211);
+  REQUIRE(is_pinhole(camera));
+  PinholeRows rows;
+  for (std::size_t count = 1; count <= PinholeRows::kCapacity; ++count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      rows.x[i] = 4.93 * static_cast<double>(i) - 0.37;
+      rows.y[i] = 211 - 3.3 * static_cast<double>(i * count % 64);
+    }
+    set_pinhole_directions(camera, count, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::dvec3 found(rows.direction[0][i], rows.direction[1][i], rows.direction[2][i]);
+      CHECK(found == camera.ray(rows.x[i], rows.y[i]).direction);
+    }
+  }
 }
 
 TEST_CASE("camera: what lies in the focus plane is sharp", "[runtime]") {
