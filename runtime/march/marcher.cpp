@@ -17,7 +17,10 @@ int Marcher::capacity_for(const Field& field) { return field.regions ? kMaxRays 
 
 // With regions every point has its own program, so that evaluating many points at once gains nothing.
 Marcher::Marcher(const Field& field)
-    : field_(field), capacity_(capacity_for(field)), min_batch_(field.regions ? 1 : kMinSearchBatch) {}
+    : field_(field),
+      capacity_(capacity_for(field)),
+      max_waiting_(static_cast<std::size_t>(capacity_)),
+      min_batch_(field.regions ? 1 : kMinSearchBatch) {}
 
 void Marcher::fail_full() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
 
@@ -25,6 +28,7 @@ void Marcher::advance() {
   if (waiting_.count > 0) begin_waiting();
   if (live_ > 0) step();
   search();
+  max_waiting_ = static_cast<std::size_t>(capacity_ - live_) - searched_.size();
 }
 
 void Marcher::begin_waiting() {

@@ -31,12 +31,12 @@ class Marcher {
   // Maximum number of rays under way, up to kMaxRays: high with regions, so that many points need one template.
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
-  int room() const { return capacity_ - live_ - static_cast<int>(waiting_.count + searched_.size()); }
+  int room() const { return static_cast<int>(max_waiting_ - waiting_.count); }
   bool empty() const { return live_ == 0 && waiting_.count == 0 && searched_.empty(); }
 
   // Requires room() > 0.
   void add(std::uint32_t id, const Ray& ray) {
-    if (room() <= 0) [[unlikely]]
+    if (waiting_.count >= max_waiting_) [[unlikely]]
       fail_full();
     ++counters_.rays;
     waiting_.push(id, ray);
@@ -107,21 +107,12 @@ class Marcher {
   StageClock clock_;
 
  private:
+  // By sums and not by branches, of which every other would be predicted wrong.
   void count(RayHit::Status status) {
-    switch (status) {
-      case RayHit::Status::Hit:
-        ++counters_.hits;
-        break;
-      case RayHit::Status::Miss:
-        ++counters_.misses;
-        break;
-      case RayHit::Status::NearMiss:
-        ++counters_.near_misses;
-        break;
-      case RayHit::Status::Invalid:
-        ++counters_.invalid;
-        break;
-    }
+    counters_.hits += status == RayHit::Status::Hit;
+    counters_.misses += status == RayHit::Status::Miss;
+    counters_.near_misses += status == RayHit::Status::NearMiss;
+    counters_.invalid += status == RayHit::Status::Invalid;
   }
   [[noreturn]] static void fail_full();
   void begin_waiting();
@@ -140,6 +131,7 @@ class Marcher {
 
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
+  std::size_t max_waiting_;         // capacity_, less the rays that are live or searched
   const std::size_t min_batch_;     // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].

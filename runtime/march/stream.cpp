@@ -47,7 +47,8 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
     : Marcher(field),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
-      takes_slope_hint_(!info(rules_.method).uses_epsilon),
+      uses_epsilon_(info(rules_.method).uses_epsilon),
+      takes_slope_hint_(!uses_epsilon_),
       max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
       use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
@@ -142,27 +143,25 @@ void Stream<S>::finish(std::size_t i) {
   const std::uint32_t evaluations = static_cast<std::uint32_t>(number(kEvaluations));
   const std::uint64_t instructions =
       field_.regions ? instructions_[i] : std::uint64_t{evaluations} * field_.distance->instructions();
-  const auto report_as = [&](RayHit::Status status, float width, double t) {
-    report(ray.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
-  };
   --live_;
   free_lanes_.push_back(i);
-  switch (static_cast<LaneVerdict>(number(kVerdict))) {
-    case LaneVerdict::Certify:
-      return certify_from(ray, side, undecided_interval(i), evaluations, instructions);
-    case LaneVerdict::Hit:
-      return report_as(RayHit::Status::Hit,
-                       static_cast<float>(info(rules_.method).uses_epsilon ? rules_.epsilon : number(kWidth)),
-                       ray.entry + static_cast<double>(number(kRoot)));
-    case LaneVerdict::OutOfSteps:
-      ++counters_.exhausted;
-      return report_as(RayHit::Status::Miss, 0, 0);
-    case LaneVerdict::Miss:
-      return report_as(RayHit::Status::Miss, 0, 0);
-    default:
-      counters_.note_invalid({number(kX), number(kY), number(kZ)});
-      return report_as(RayHit::Status::Invalid, 0, 0);
+  const auto verdict = static_cast<LaneVerdict>(number(kVerdict));
+  if (verdict == LaneVerdict::Certify)
+    return certify_from(ray, side, undecided_interval(i), evaluations, instructions);
+  RayHit::Status status = RayHit::Status::Miss;
+  float width = 0;
+  double t = 0;
+  // Conditional moves, because a branch would be predicted wrong for every other ray.
+  const bool hit = verdict == LaneVerdict::Hit;
+  status = hit ? RayHit::Status::Hit : status;
+  width = hit ? static_cast<float>(uses_epsilon_ ? rules_.epsilon : number(kWidth)) : width;
+  t = hit ? ray.entry + static_cast<double>(number(kRoot)) : t;
+  if (verdict == LaneVerdict::OutOfSteps) ++counters_.exhausted;
+  if (verdict == LaneVerdict::Invalid) {
+    counters_.note_invalid({number(kX), number(kY), number(kZ)});
+    status = RayHit::Status::Invalid;
   }
+  report(ray.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
 }
 
 // Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins

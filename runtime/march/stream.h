@@ -31,6 +31,7 @@ class Stream final : public Marcher {
 
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
+  const bool uses_epsilon_;      // the method is a baseline method, for which a hit is as wide as epsilon
   const bool takes_slope_hint_;  // rays begin with Ray::slope, unlike those of the baseline methods
   const int max_lanes_;          // maximum number in use
   const bool use_convexity_;
