@@ -73,7 +73,8 @@ bool UnitWorker::next_unit() {
 bool UnitWorker::add(const PathKey& key, const PathSample& sample) {
   OpenUnit& unit = open_[key.unit];
   const std::optional<double>& max = work_.context.settings.sample_clamp;
-  const bool room = unit.film.add(key.x, key.y, max ? clamped(sample, static_cast<float>(*max)) : sample);
+  const bool room = max ? unit.film.add(key.x, key.y, clamped(sample, static_cast<float>(*max)))
+                        : unit.film.add(key.x, key.y, sample);
   if (++unit.ended == unit.begun && unit.all_begun) submit_unit(key.unit);
   return room;
 }
