@@ -67,6 +67,9 @@ std::vector<float> cell_luminance(int width, int height, const Radiance& radianc
   return out;
 }
 
+// Returns the share of the gradient's upper colour in a direction of this height.
+double gradient_share(float height) { return std::clamp((static_cast<double>(height) + 1) / 2, 0.0, 1.0); }
+
 }  // namespace
 
 Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
@@ -127,7 +130,7 @@ glm::vec3 Environment::pixel(glm::vec3 direction) const {
 glm::vec3 Environment::backdrop(glm::vec3 direction) const {
   if (type_ == Type::Sky) return sky_->radiance(direction);
   if (type_ == Type::Image) return pixel(direction);
-  const double share = std::clamp((static_cast<double>(direction.y) + 1) / 2, 0.0, 1.0);
+  const double share = gradient_share(direction.y);
   return glm::vec3(bottom_ * (1 - share) + top_ * share);
 }
 
@@ -137,6 +140,23 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
     if (disc.contains(direction)) sum += disc.radiance;
   }
   return sum;
+}
+
+// Apart for a gradient, whose colour takes less time than a call.
+void Environment::set_radiance(std::size_t count, BackgroundRows& rows) const {
+  const bool plain = type_ == Type::Gradient && discs_.empty();
+  for (int channel = 0; plain && channel < 3; ++channel) {
+    const double bottom = bottom_[channel], top = top_[channel];
+    for (std::size_t i = 0; i < count; ++i) {
+      const double share = gradient_share(rows.direction[1][i]);
+      rows.radiance[channel][i] = static_cast<float>(bottom * (1 - share) + top * share);
+    }
+  }
+  if (plain) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec3 found = radiance({rows.direction[0][i], rows.direction[1][i], rows.direction[2][i]});
+    for (int channel = 0; channel < 3; ++channel) rows.radiance[channel][i] = found[channel];
+  }
 }
 
 // Returns 0 for a gradient, which is so even that BSDF sampling finds its light with less noise

@@ -21,12 +21,20 @@
 
 namespace fathom::runtime {
 
+// Rays that leave the scene, [ray]: their directions, weights and the radiance that they find.
+struct BackgroundRows {
+  static constexpr std::size_t kCapacity = 64;
+  float direction[3][kCapacity], weight[kCapacity], radiance[3][kCapacity];
+};
+
 class Environment {
  public:
   // `image` is the image that the scene's background names, if it names one.
   Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image);
 
-  glm::vec3 radiance(glm::vec3 direction) const;                // of rays that leave the scene
+  glm::vec3 radiance(glm::vec3 direction) const;  // of rays that leave the scene
+  // Sets the radiance of the first `count` rows to that of their directions.
+  void set_radiance(std::size_t count, BackgroundRows& rows) const;
   bool emits() const { return mean() > 0 || !discs_.empty(); }  // true if there is light to sample
   // Returns an estimate of the irradiance by the sampled light, as luminance. 0 only if none of that light arrives.
   float importance(const LightSampleContext& context) const;

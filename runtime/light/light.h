@@ -65,6 +65,8 @@ class Lights {
   float pdf_of_hit(const LightSampleContext& context, std::uint32_t surface, glm::dvec3 hit) const;
 
   glm::vec3 background(glm::vec3 direction) const { return environment_.radiance(direction); }
+  // Sets the radiance of the first `count` rows.
+  void set_background(std::size_t count, BackgroundRows& rows) const { environment_.set_radiance(count, rows); }
   float pdf_of_background(const LightSampleContext& context, glm::vec3 direction) const;
 
  private:

@@ -12,9 +12,9 @@
 namespace fathom::runtime {
 
 // Maximum number of paths that begin at once.
-inline constexpr std::size_t kCameraBatch = 32;
+inline constexpr std::size_t kCameraBatch = 64;
 
-// Sets paths[ids[i]] to the beginning of path keys[i]. The next ray is the camera ray.
+// Sets paths[ids[i]] to the beginning of path keys[i]. The ray is the camera ray.
 void begin_paths(const RenderContext& context, std::span<const PathKey> keys, std::span<const std::uint32_t> ids,
                  std::span<PathState> paths, RealScratch& scratch);
 

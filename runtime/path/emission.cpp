@@ -1,27 +1,42 @@
 #include "runtime/path/emission.h"
 
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "runtime/base/color.h"
 #include "runtime/path/mis.h"
 
 namespace fathom::runtime {
+namespace {
+
+// Returns the weight of the background's light that a path's ray has found.
+float background_weight(const RenderContext& context, const PathState& path) {
+  float light_pdf = 0;
+  if (path.bsdf_pdf > 0 && !context.lights.empty()) {
+    light_pdf = context.lights.pdf_of_background(path.bounce_context, glm::vec3(path.ray.direction));
+  }
+  return bsdf_mis_weight(context.settings.light_sampling, path.bsdf_pdf, light_pdf);
+}
+
+}  // namespace
 
 void add_radiance(const Settings& settings, PathState& path, glm::vec3 radiance, int bounces) {
   const std::optional<double>& max = settings.clamp;
+  float scale = 1;  // a factor, because to change `radiance` itself would cost a copy in memory
   if (max && bounces > 1) {
     const float brightest = max_component(radiance);
-    if (brightest > static_cast<float>(*max)) radiance *= static_cast<float>(*max) / brightest;
+    if (brightest > static_cast<float>(*max)) scale = static_cast<float>(*max) / brightest;
   }
-  path.result.radiance += radiance;
+  path.result.radiance += radiance * scale;
 }
 
-void add_emission(const RenderContext& context, std::span<PathVertex> vertices) {
-  for (PathVertex& vertex : vertices) {
-    const SurfaceInteraction& surface = vertex.surface;
+void add_emission(const RenderContext& context, VertexBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const SurfaceInteraction& surface = batch.surface[i];
+    if (surface.material->emission == glm::vec3(0)) continue;
     const glm::vec3 emitted_radiance = surface.material->emitted_radiance();
-    if (emitted_radiance == glm::vec3(0)) continue;
-    PathState& path = *vertex.path;
+    PathState& path = *batch.path[i];
     float light_pdf = 0;
     if (path.bsdf_pdf > 0 && !context.lights.empty()) {
       light_pdf = context.lights.pdf_of_hit(path.bounce_context, surface.point->surface, surface.hit->position);
@@ -32,19 +47,28 @@ void add_emission(const RenderContext& context, std::span<PathVertex> vertices) 
 }
 
 void add_background(const RenderContext& context, std::span<const RayHit> ray_hits, std::span<PathState> paths) {
+  BackgroundRows rows;
+  std::array<PathState*, BackgroundRows::kCapacity> seeing;
+  const auto add = [&](std::size_t count) {
+    context.lights.set_background(count, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      PathState& path = *seeing[i];
+      const glm::vec3 radiance(rows.radiance[0][i], rows.radiance[1][i], rows.radiance[2][i]);
+      add_radiance(context.settings, path, path.throughput * radiance * rows.weight[i], path.bounces);
+    }
+  };
+  std::size_t count = 0;
   for (const RayHit& ray_hit : ray_hits) {
     PathState& path = paths[ray_hit.id];
     if (ray_hit.status == RayHit::Status::Invalid || path.medium.field != 0) continue;
-    const glm::vec3 direction(path.direction);
-    float light_pdf = 0;
-    if (path.bsdf_pdf > 0 && !context.lights.empty()) {
-      light_pdf = context.lights.pdf_of_background(path.bounce_context, direction);
-    }
-    const float weight = bsdf_mis_weight(context.settings.light_sampling, path.bsdf_pdf, light_pdf);
+    const float weight = background_weight(context, path);
     if (!(weight > 0)) continue;
-    const glm::vec3 background = context.lights.background(direction);
-    add_radiance(context.settings, path, path.throughput * background * weight, path.bounces);
+    seeing[count] = &path;
+    rows.weight[count] = weight;
+    for (int axis = 0; axis < 3; ++axis) rows.direction[axis][count] = static_cast<float>(path.ray.direction[axis]);
+    if (++count == BackgroundRows::kCapacity) add(std::exchange(count, 0));
   }
+  add(count);
 }
 
 }  // namespace fathom::runtime

@@ -6,8 +6,8 @@
 
 #include "runtime/march/ray.h"
 #include "runtime/path/path_state.h"
-#include "runtime/path/path_vertex.h"
 #include "runtime/path/render_context.h"
+#include "runtime/path/vertex_batch.h"
 
 namespace fathom::runtime {
 
@@ -15,7 +15,7 @@ namespace fathom::runtime {
 void add_radiance(const Settings& settings, PathState& path, glm::vec3 radiance, int bounces);
 
 // Adds the light that the surfaces emit.
-void add_emission(const RenderContext& context, std::span<PathVertex> vertices);
+void add_emission(const RenderContext& context, VertexBatch& batch);
 
 // Adds the light of the background to paths whose rays hit nothing.
 void add_background(const RenderContext& context, std::span<const RayHit> ray_hits, std::span<PathState> paths);

@@ -1,14 +1,13 @@
 #include "runtime/path/hits.h"
 
-#include <algorithm>
-
 namespace fathom::runtime {
 namespace {
 
-bool is_hit(const RayHit& ray_hit) { return ray_hit.status == RayHit::Status::Hit; }
-
-Hit make_hit(const RayHit& ray_hit, glm::dvec3 origin, glm::dvec3 direction) {
-  return {origin + ray_hit.t * direction, glm::vec3(-direction), ray_hit.side, ray_hit.width};
+void set_hit(const RayHit& ray_hit, const Ray& ray, Hit& hit) {
+  hit.position = ray.origin + ray_hit.t * ray.direction;
+  hit.wo = glm::vec3(-ray.direction);
+  hit.side = ray_hit.side;
+  hit.width = ray_hit.width;
 }
 
 MaterialPoint mix_of(const RenderContext& context, const vm::SurfaceShares& shares, glm::dvec3 position,
@@ -27,47 +26,67 @@ MaterialPoint mix_of(const RenderContext& context, const vm::SurfaceShares& shar
   return mixed;
 }
 
-void find_material(const RenderContext& context, SurfaceInteraction& surface, RealScratch& scratch) {
+// Finds the material of a vertex. `own`: where it is kept if it is not the same everywhere.
+void find_material(const RenderContext& context, SurfaceInteraction& surface, MaterialPoint& own,
+                   RealScratch& scratch) {
   const std::uint32_t number = surface.point->material;
   const glm::dvec3 position = surface.hit->position;
   if (context.scene.surfaces[surface.point->surface].mixed) {
-    const Field& field = context.field_at(surface.medium.field);
+    const Field& field = context.field_at(surface.medium->field);
     const vm::SurfaceShares shares = find_blend_weights(context.scene, field, position, scratch);
     if (shares.count > 1) {
-      surface.own_material = mix_of(context, shares, position, scratch);
-      surface.material = &surface.own_material;
+      own = mix_of(context, shares, position, scratch);
+      surface.material = &own;
       return;
     }
   }
   surface.material = &context.materials.untextured(number);
   if (!context.materials.is_textured(number)) return;
-  surface.own_material = context.materials.at(number, position, surface.point->place, scratch.workspace);
-  surface.material = &surface.own_material;
+  own = context.materials.at(number, position, surface.point->place, scratch.workspace);
+  surface.material = &own;
 }
 
-void begin_vertex(const HitBatch& batch, std::size_t i, PathState& path, PathVertex& vertex) {
-  vertex.id = batch.ray_hits[i].id;
-  vertex.path = &path;
-  vertex.t = batch.ray_hits[i].t;
-  vertex.active = true;
-  vertex.surface.hit = &batch.hits[i];
-  vertex.surface.point = &batch.points[i];
-  vertex.shadow_ray.reset();
+// Begins vertex i at hit number `from`. `medium`: of the ray.
+void begin_vertex(const HitBatch& hits, std::size_t from, PathState& path, MediumState& medium, VertexBatch& batch,
+                  std::size_t i) {
+  const RayHit& ray_hit = hits.ray_hits[from];
+  batch.id[i] = ray_hit.id;
+  batch.path[i] = &path;
+  batch.t[i] = ray_hit.t;
+  batch.active[i] = true;
+  batch.has_shadow_ray[i] = false;
+  medium.side = ray_hit.side;
+  SurfaceInteraction& surface = batch.surface[i];
+  surface.hit = &hits.hits[from];
+  surface.point = &hits.points[from];
+  surface.medium = &medium;
 }
 
 }  // namespace
 
-RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths,
-                            bool has_null_transmission) {
-  const auto tests_shadow = [&](const RayHit& ray_hit) { return paths[ray_hit.id].has_shadow_ray; };
-  const auto ends_test = [&](const RayHit& ray_hit) {
-    return tests_shadow(ray_hit) && (!has_null_transmission || !is_hit(ray_hit));
+// Counts before it moves: a branch on where a ray ended would be predicted wrong for every other ray.
+RayHitGroups group_ray_hits(std::span<const RayHit> ray_hits, std::span<const PathState> paths,
+                            bool has_null_transmission, std::vector<RayHit>& grouped) {
+  enum Group : std::uint8_t { kEndedShadow, kShadowHit, kSurfaceHit, kEscaped, kGroups };
+  const Group of_shadow[] = {kEndedShadow, has_null_transmission ? kShadowHit : kEndedShadow};
+  const Group of_path[] = {kEscaped, kSurfaceHit};
+  const auto group_of = [&](const RayHit& ray_hit) {
+    const bool hit = ray_hit.status == RayHit::Status::Hit;
+    return paths[ray_hit.id].has_shadow_ray ? of_shadow[hit] : of_path[hit];
   };
-  const auto tests_end = std::partition(ray_hits.begin(), ray_hits.end(), ends_test);
-  const auto shadows_end = std::partition(tests_end, ray_hits.end(), tests_shadow);
-  const auto hits_end = std::partition(shadows_end, ray_hits.end(), is_hit);
-  return {
-      {ray_hits.begin(), tests_end}, {tests_end, shadows_end}, {shadows_end, hits_end}, {hits_end, ray_hits.end()}};
+  std::size_t ends[kGroups] = {}, next[kGroups] = {};
+  for (const RayHit& ray_hit : ray_hits) ++ends[group_of(ray_hit)];
+  for (std::size_t group = 1; group < kGroups; ++group) {
+    next[group] = ends[group - 1];
+    ends[group] += ends[group - 1];
+  }
+  grouped.resize(ray_hits.size());
+  for (const RayHit& ray_hit : ray_hits) grouped[next[group_of(ray_hit)]++] = ray_hit;
+  const auto part = [&](Group group) {
+    const std::size_t first = group == 0 ? 0 : ends[group - 1];
+    return std::span<const RayHit>(grouped).subspan(first, ends[group] - first);
+  };
+  return {part(kEndedShadow), part(kShadowHit), part(kSurfaceHit), part(kEscaped)};
 }
 
 void add_costs(std::span<const RayHit> ray_hits, std::span<PathState> paths) {
@@ -81,15 +100,14 @@ void set_path_hit_positions(std::span<const RayHit> ray_hits, std::span<const Pa
   batch.ray_hits = ray_hits;
   for (std::size_t i = 0; i < ray_hits.size(); ++i) {
     const PathState& path = paths[ray_hits[i].id];
-    batch.hits[i] = make_hit(ray_hits[i], path.origin, path.direction);
+    set_hit(ray_hits[i], path.ray, batch.hits[i]);
   }
 }
 
 void set_shadow_hit_positions(std::span<const RayHit> ray_hits, std::span<const ShadowRay> rays, HitBatch& batch) {
   batch.ray_hits = ray_hits;
   for (std::size_t i = 0; i < ray_hits.size(); ++i) {
-    const Ray& ray = rays[ray_hits[i].id].ray;
-    batch.hits[i] = make_hit(ray_hits[i], ray.origin, ray.direction);
+    set_hit(ray_hits[i], rays[ray_hits[i].id].ray, batch.hits[i]);
   }
 }
 
@@ -100,42 +118,44 @@ void find_surface_points(const RenderContext& context, std::size_t field, HitBat
   find_object_points(context.scene, context.field_at(field), hits, batch.points, scratch);
 }
 
-void begin_vertices(const HitBatch& batch, std::size_t first, std::span<PathState> paths,
-                    std::span<PathVertex> vertices) {
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const RayHit& ray_hit = batch.ray_hits[first + i];
-    PathState& path = paths[ray_hit.id];
-    begin_vertex(batch, first + i, path, vertices[i]);
-    path.medium.side = ray_hit.side;
-    vertices[i].surface.medium = path.medium;
+void begin_vertices(const HitBatch& hits, std::size_t first, std::size_t count, std::span<PathState> paths,
+                    VertexBatch& batch) {
+  batch.count = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    PathState& path = paths[hits.ray_hits[first + i].id];
+    begin_vertex(hits, first + i, path, path.medium, batch, i);
   }
 }
 
-void begin_shadow_vertices(const HitBatch& batch, std::size_t first, std::span<PathState> paths,
-                           std::span<const ShadowRay> rays, std::span<PathVertex> vertices) {
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const RayHit& ray_hit = batch.ray_hits[first + i];
-    begin_vertex(batch, first + i, paths[ray_hit.id], vertices[i]);
-    vertices[i].surface.medium = rays[ray_hit.id].medium;
-    vertices[i].surface.medium.side = ray_hit.side;
+void begin_shadow_vertices(const HitBatch& hits, std::size_t first, std::size_t count, std::span<PathState> paths,
+                           std::span<ShadowRay> rays, VertexBatch& batch) {
+  batch.count = count;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t id = hits.ray_hits[first + i].id;
+    begin_vertex(hits, first + i, paths[id], rays[id].medium, batch, i);
   }
 }
 
-void find_materials(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch) {
-  for (PathVertex& vertex : vertices) find_material(context, vertex.surface, scratch);
+void find_materials(const RenderContext& context, VertexBatch& batch, RealScratch& scratch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    find_material(context, batch.surface[i], batch.own_material[i], scratch);
+  }
 }
 
-std::uint64_t record_first_hits(const RenderContext& context, std::span<PathVertex> vertices) {
+std::uint64_t record_first_hits(const RenderContext& context, VertexBatch& batch) {
+  const FilmLayers& layers = context.settings.layers;
+  const bool records = layers.first_hit || layers.position || layers.ids;
   std::uint64_t count = 0;
-  for (PathVertex& vertex : vertices) {
-    PathState& path = *vertex.path;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    PathState& path = *batch.path[i];
     if (path.bounces + path.null_interactions > 0) continue;
     ++count;
-    const SurfaceInteraction& surface = vertex.surface;
     path.result.hit = true;
+    if (!records) continue;
+    const SurfaceInteraction& surface = batch.surface[i];
     path.result.albedo = albedo_of(*surface.material);
     path.result.normal = surface.point->normal;
-    path.result.depth = vertex.t;
+    path.result.depth = batch.t[i];
     path.result.position = surface.hit->position;
     path.result.surface = context.numbered ? surface.point->surface : kNoId;
     path.result.material = context.numbered ? surface.point->material : kNoId;

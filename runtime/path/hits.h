@@ -5,12 +5,13 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "runtime/march/ray.h"
 #include "runtime/path/path_state.h"
-#include "runtime/path/path_vertex.h"
 #include "runtime/path/render_context.h"
 #include "runtime/path/surface.h"
+#include "runtime/path/vertex_batch.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
@@ -22,8 +23,10 @@ struct RayHitGroups {
   std::span<const RayHit> surface_hits;       // of the paths' own rays
   std::span<const RayHit> escaped_rays;       // the paths' own rays that hit nothing
 };
-// Reorders the results. `has_null_transmission`: true if there are surfaces that light may pass straight through.
-RayHitGroups group_ray_hits(std::span<RayHit> ray_hits, std::span<const PathState> paths, bool has_null_transmission);
+// Moves the results to `grouped`, in order within each group. `has_null_transmission`: true if there are surfaces
+// that light may pass straight through.
+RayHitGroups group_ray_hits(std::span<const RayHit> ray_hits, std::span<const PathState> paths,
+                            bool has_null_transmission, std::vector<RayHit>& grouped);
 
 // Adds the evaluations of the rays to their paths.
 void add_costs(std::span<const RayHit> ray_hits, std::span<PathState> paths);
@@ -41,16 +44,16 @@ void set_shadow_hit_positions(std::span<const RayHit> ray_hits, std::span<const 
 void find_surface_points(const RenderContext& context, std::size_t field, HitBatch& batch, vm::Workspace& workspace,
                          RealScratch& scratch);
 
-// Begin a vertex for each hit from number `first` on. The vertices point into the batch.
-void begin_vertices(const HitBatch& batch, std::size_t first, std::span<PathState> paths,
-                    std::span<PathVertex> vertices);
-void begin_shadow_vertices(const HitBatch& batch, std::size_t first, std::span<PathState> paths,
-                           std::span<const ShadowRay> rays, std::span<PathVertex> vertices);
+// Begin a vertex for each of `count` hits from number `first` on. The vertices point into `hits`, `paths` and `rays`.
+void begin_vertices(const HitBatch& hits, std::size_t first, std::size_t count, std::span<PathState> paths,
+                    VertexBatch& batch);
+void begin_shadow_vertices(const HitBatch& hits, std::size_t first, std::size_t count, std::span<PathState> paths,
+                           std::span<ShadowRay> rays, VertexBatch& batch);
 
 // Finds the materials. A blend that mixes materials counts each by its share.
-void find_materials(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch);
+void find_materials(const RenderContext& context, VertexBatch& batch, RealScratch& scratch);
 
 // Records the first hits of paths for the film's layers. Returns their number.
-std::uint64_t record_first_hits(const RenderContext& context, std::span<PathVertex> vertices);
+std::uint64_t record_first_hits(const RenderContext& context, VertexBatch& batch);
 
 }  // namespace fathom::runtime

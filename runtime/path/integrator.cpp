@@ -30,7 +30,7 @@ Integrator::Integrator(const RenderContext& context, PathSource& source, SampleS
       sink_(sink),
       queues_(context),
       paths_(queues_.capacity()),
-      vertices_(kVertexBatch) {
+      batch_(new VertexBatch()) {
   if (context.materials.any_null_transmission()) shadow_rays_.resize(paths_.size());
   for (std::size_t id = paths_.size(); id > 0; --id) free_ids_.push_back(static_cast<std::uint32_t>(id - 1));
 }
@@ -69,7 +69,7 @@ void Integrator::process_ray_hits(std::size_t field) {
   queues_.take_ray_hits(field, ray_hits_);
   if (context_.settings.layers.cost) add_costs(ray_hits_, paths_);
   clock.enter(Stage::Shading);
-  const RayHitGroups groups = group_ray_hits(ray_hits_, paths_, !shadow_rays_.empty());
+  const RayHitGroups groups = group_ray_hits(ray_hits_, paths_, !shadow_rays_.empty(), grouped_);
   end_shadow_rays(context_, field, groups.ended_shadow_rays, paths_, shadow_rays_);
   for (const RayHit& ray_hit : groups.ended_shadow_rays) continue_path(ray_hit.id);
   for_each_part(groups.shadow_hits.size(), kSurfaceBatch, [&](std::size_t first, std::size_t count) {
@@ -86,72 +86,72 @@ void Integrator::process_ray_hits(std::size_t field) {
 }
 
 void Integrator::shade_hits(std::size_t field, std::span<const RayHit> ray_hits) {
-  HitBatch batch;
+  HitBatch hits;
   queues_.clock().enter(Stage::Normals);
-  set_path_hit_positions(ray_hits, paths_, batch);
-  find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
+  set_path_hit_positions(ray_hits, paths_, hits);
+  find_surface_points(context_, field, hits, queues_.workspace(field), scratch_);
   queues_.clock().enter(Stage::Shading);
   for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
-    const std::span<PathVertex> vertices = std::span(vertices_).first(count);
-    begin_vertices(batch, first, paths_, vertices);
-    run_stages(vertices);
+    begin_vertices(hits, first, count, paths_, *batch_);
+    run_stages();
   });
 }
 
-void Integrator::run_stages(std::span<PathVertex> vertices) {
-  attenuate_paths(vertices);
-  find_materials(context_, vertices, scratch_);
-  find_media(context_, vertices, scratch_);
-  stats_.primary_hits += record_first_hits(context_, vertices);
-  add_emission(context_, vertices);
-  make_bsdfs(vertices);
-  sample_bsdfs(context_.settings, vertices);
-  sample_lights(context_, vertices);
-  sample_direct_light(context_, vertices, scratch_);
-  apply_bsdf_samples(context_.settings, vertices);
-  trace_next_rays(vertices);
+void Integrator::run_stages() {
+  VertexBatch& batch = *batch_;
+  attenuate_paths(batch);
+  find_materials(context_, batch, scratch_);
+  find_media(context_, batch, scratch_);
+  stats_.primary_hits += record_first_hits(context_, batch);
+  add_emission(context_, batch);
+  make_bsdfs(batch);
+  sample_bsdfs(context_.settings, batch);
+  sample_lights(context_, batch);
+  sample_direct_light(context_, batch, scratch_);
+  apply_bsdf_samples(context_.settings, batch);
+  trace_next_rays();
 }
 
 void Integrator::process_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits) {
-  HitBatch batch;
+  HitBatch hits;
   queues_.clock().enter(Stage::Normals);
-  set_shadow_hit_positions(ray_hits, shadow_rays_, batch);
-  find_surface_points(context_, field, batch, queues_.workspace(field), scratch_);
+  set_shadow_hit_positions(ray_hits, shadow_rays_, hits);
+  find_surface_points(context_, field, hits, queues_.workspace(field), scratch_);
   queues_.clock().enter(Stage::Shading);
   for_each_part(ray_hits.size(), kVertexBatch, [&](std::size_t first, std::size_t count) {
-    const std::span<PathVertex> vertices = std::span(vertices_).first(count);
-    begin_shadow_vertices(batch, first, paths_, shadow_rays_, vertices);
-    run_shadow_stages(vertices);
+    begin_shadow_vertices(hits, first, count, paths_, shadow_rays_, *batch_);
+    run_shadow_stages();
   });
 }
 
-void Integrator::run_shadow_stages(std::span<PathVertex> vertices) {
-  find_materials(context_, vertices, scratch_);
-  end_occluded_rays(shadow_rays_, vertices);
-  find_media(context_, vertices, scratch_);
-  make_bsdfs(vertices);
-  continue_shadow_rays(shadow_rays_, vertices);
-  trace_next_rays(vertices);
+void Integrator::run_shadow_stages() {
+  VertexBatch& batch = *batch_;
+  find_materials(context_, batch, scratch_);
+  end_occluded_rays(shadow_rays_, batch);
+  find_media(context_, batch, scratch_);
+  make_bsdfs(batch);
+  continue_shadow_rays(shadow_rays_, batch);
+  trace_next_rays();
 }
 
-void Integrator::trace_next_rays(std::span<const PathVertex> vertices) {
-  for (const PathVertex& vertex : vertices) {
-    if (!vertex.shadow_ray) {
-      continue_path(vertex.id);
+void Integrator::trace_next_rays() {
+  const VertexBatch& batch = *batch_;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::uint32_t id = batch.id[i];
+    if (!batch.has_shadow_ray[i]) {
+      continue_path(id);
       continue;
     }
+    const ShadowRay& shadow = batch.shadow_ray[i];
     ++stats_.shadow_rays;
-    if (!shadow_rays_.empty()) shadow_rays_[vertex.id] = *vertex.shadow_ray;
-    queues_.add(vertex.shadow_ray->medium.field, vertex.id, vertex.shadow_ray->ray);
+    if (!shadow_rays_.empty()) shadow_rays_[id] = shadow;
+    queues_.add(shadow.medium.field, id, shadow.ray);
   }
 }
 
 void Integrator::trace_path(std::uint32_t id) {
-  PathState& path = paths_[id];
-  path.medium = path.next_medium;
-  path.origin = path.next.origin;
-  path.direction = path.next.direction;
-  queues_.add(path.medium.field, id, path.next);
+  const PathState& path = paths_[id];
+  queues_.add(path.medium.field, id, path.ray);
 }
 
 void Integrator::continue_path(std::uint32_t id) {

@@ -10,7 +10,7 @@
 //   scattering   BSDF samples, the next rays, Russian roulette          scatter.h
 //   direct light next-event estimation by shadow rays                   direct_light.h
 //
-// A stage is a function that loops over a span of paths (path_state.h), of their vertices (path_vertex.h) or of a
+// A stage is a function that loops over a span of paths (path_state.h), of their vertices (vertex_batch.h) or of a
 // marcher's results. Stages do not call each other: run_stages() lists them in order, and what one stage leaves to
 // the next stands in the states. Light is found in two ways, by shadow rays and by the paths' own rays, with weights
 // whose sum is 1 (mis.h).
@@ -24,6 +24,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,9 +34,9 @@
 #include "runtime/march/ray.h"
 #include "runtime/path/hits.h"
 #include "runtime/path/path_state.h"
-#include "runtime/path/path_vertex.h"
 #include "runtime/path/ray_queues.h"
 #include "runtime/path/render_context.h"
+#include "runtime/path/vertex_batch.h"
 
 namespace fathom::runtime {
 
@@ -70,11 +71,11 @@ class Integrator {
   void process_ray_hits(std::size_t field);
   void shade_hits(std::size_t field, std::span<const RayHit> ray_hits);
   void process_shadow_hits(std::size_t field, std::span<const RayHit> ray_hits);
-  void run_stages(std::span<PathVertex> vertices);
-  void run_shadow_stages(std::span<PathVertex> vertices);
+  void run_stages();
+  void run_shadow_stages();
 
-  // Traces the shadow rays of the vertices. Paths without one continue.
-  void trace_next_rays(std::span<const PathVertex> vertices);
+  // Traces the shadow rays of the batch. Paths without one continue.
+  void trace_next_rays();
   void trace_path(std::uint32_t id);
   void continue_path(std::uint32_t id);  // or end it
   void retire_path(std::uint32_t id);    // and free the id
@@ -86,8 +87,8 @@ class Integrator {
   std::vector<PathState> paths_;        // [id]
   std::vector<ShadowRay> shadow_rays_;  // [id], if surfaces may let light straight through; else empty
   std::vector<std::uint32_t> free_ids_, ended_ids_;
-  std::vector<RayHit> ray_hits_;      // scratch
-  std::vector<PathVertex> vertices_;  // scratch
+  std::vector<RayHit> ray_hits_, grouped_;  // scratch
+  std::unique_ptr<VertexBatch> batch_;      // scratch
   RealScratch scratch_;
   Stats stats_;
 };

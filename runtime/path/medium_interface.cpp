@@ -7,8 +7,8 @@ namespace {
 
 // True if the ray comes out of the solid whose surface it hit, and not from the open or from another medium.
 bool is_inside(const RenderContext& context, const SurfaceInteraction& surface) {
-  if (surface.medium.field == 0) return surface.hit->side < 0;
-  return context.media.material(surface.medium.field - 1) == surface.point->material;
+  if (surface.medium->field == 0) return surface.hit->side < 0;
+  return context.media.material(surface.medium->field - 1) == surface.point->material;
 }
 
 // Returns the state at a place beyond the surface that no medium fills. It is the open, or a solid that blends and
@@ -29,9 +29,8 @@ MediumState no_medium(const RenderContext& context, const SurfaceInteraction& su
 }
 
 MediumState medium_beyond(const RenderContext& context, const SurfaceInteraction& surface, RealScratch& scratch) {
-  if (!surface.material->transmits()) return surface.medium;
   const Media& media = context.media;
-  MediumState state = surface.medium;
+  MediumState state = *surface.medium;
   const glm::dvec3 place = spawn_origin(*surface.hit, *surface.point, true);
   std::optional<std::uint32_t> medium;
   if (media.size() > 1 || !surface.inside) medium = media.at(place, scratch);
@@ -50,17 +49,22 @@ MediumState medium_beyond(const RenderContext& context, const SurfaceInteraction
 
 }  // namespace
 
-void attenuate_paths(std::span<PathVertex> vertices) {
-  for (PathVertex& vertex : vertices) vertex.path->throughput *= transmittance(vertex.path->medium, vertex.t);
+void attenuate_paths(VertexBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    PathState& path = *batch.path[i];
+    if (path.medium.absorption != glm::vec3(0)) path.throughput *= transmittance(path.medium, batch.t[i]);
+  }
 }
 
-void find_media(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch) {
-  for (PathVertex& vertex : vertices) {
-    if (!vertex.active) continue;
-    SurfaceInteraction& surface = vertex.surface;
+void find_media(const RenderContext& context, VertexBatch& batch, RealScratch& scratch) {
+  for_each_active(batch, [&](std::size_t i) {
+    SurfaceInteraction& surface = batch.surface[i];
     surface.inside = is_inside(context, surface);
-    surface.medium_beyond = medium_beyond(context, surface, scratch);
-  }
+    surface.medium_beyond = surface.medium;
+    if (!surface.material->transmits()) return;
+    batch.own_beyond[i] = medium_beyond(context, surface, scratch);
+    surface.medium_beyond = &batch.own_beyond[i];
+  });
 }
 
 }  // namespace fathom::runtime

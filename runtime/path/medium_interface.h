@@ -2,18 +2,16 @@
 // Tested by: tests/runtime/path/media_test.cpp
 #pragma once
 
-#include <span>
-
 #include "runtime/field/field.h"
-#include "runtime/path/path_vertex.h"
 #include "runtime/path/render_context.h"
+#include "runtime/path/vertex_batch.h"
 
 namespace fathom::runtime {
 
 // Multiplies the paths' throughput by the transmittance of their current rays.
-void attenuate_paths(std::span<PathVertex> vertices);
+void attenuate_paths(VertexBatch& batch);
 
 // Sets SurfaceInteraction::inside and medium_beyond, from the medium of the ray and the material.
-void find_media(const RenderContext& context, std::span<PathVertex> vertices, RealScratch& scratch);
+void find_media(const RenderContext& context, VertexBatch& batch, RealScratch& scratch);
 
 }  // namespace fathom::runtime

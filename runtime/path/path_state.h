@@ -19,30 +19,28 @@ struct PathKey {
   std::uint32_t unit;    // number of the unit that the path belongs to (runtime/unit_worker.h)
 };
 
-struct PathState {
+// The members that every vertex touches come first: a path's state is rarely in the first cache.
+struct alignas(64) PathState {
   PathKey key;
   Sampler sampler;
-  // The current ray, scene units, and the medium that it travels through.
-  glm::dvec3 origin;
-  glm::dvec3 direction;
-  MediumState medium;
   glm::vec3 throughput;
-  float weight;           // of the path in its pixel, by the filter
-  float eta_scale;        // product of eta^2 over the refractions: their part of the throughput
-  int bounces;            // so far
+  float eta_scale;  // product of eta^2 over the refractions: their part of the throughput
+  float weight;     // of the path in its pixel, by the filter
+  int bounces;      // so far
+  // The current ray and the medium that it travels through. At a vertex these become the next ray's, unless the path
+  // ends. A ray of a path has no end.
+  Ray ray;
+  MediumState medium;
   int null_interactions;  // so far: holes and thin walls passed straight through, which are no bounces
-  // The last bounce, for MIS: its place, and the density per solid angle of the direction that was sampled there. The
-  // density is 0 for a delta direction and for camera rays.
-  LightSampleContext bounce_context;
-  float bsdf_pdf;
   // While a shadow ray is under way: the light that it brings if it is unoccluded.
   bool has_shadow_ray;
   bool ends;  // after the shadow ray, if there is one
   glm::vec3 shadow_radiance;
   int shadow_bounces;  // of the path that the shadow ray would end
-  // The next ray, unless the path ends.
-  Ray next;
-  MediumState next_medium;
+  // The last bounce, for MIS: its place, and the density per solid angle of the direction that was sampled there. The
+  // density is 0 for a delta direction and for camera rays.
+  float bsdf_pdf;
+  LightSampleContext bounce_context;  // only in a scene with lights
   PathSample result;
 };
 

@@ -5,8 +5,9 @@
 namespace fathom::runtime {
 namespace {
 
-// The next stages take so many results at once: enough for the machine's blocks, few enough to keep the stream full.
-constexpr std::size_t kResultBatch = 64;
+// The next stages take so many results at once: a block of the machine, and half of a marcher's rays, so that the
+// other half fills its lanes meanwhile.
+constexpr std::size_t kResultBatch = 256;
 
 std::size_t rays_in(const Marcher& marcher) { return static_cast<std::size_t>(marcher.capacity() - marcher.room()); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/color.h"
+#include "runtime/path/scatter_lanes.h"
 
 namespace fathom::runtime {
 namespace {
@@ -17,8 +18,8 @@ constexpr int kFreeNullInteractions = 64;
 // Returns the index of refraction beyond the surface relative to the ray's medium. A material that fills no body
 // bends light at its surface all the same.
 float relative_index(const SurfaceInteraction& surface) {
-  const float beyond = surface.material->has_interior() ? surface.medium_beyond.ior : surface.material->ior;
-  return beyond / surface.medium.ior;
+  const float beyond = surface.material->has_interior() ? surface.medium_beyond->ior : surface.material->ior;
+  return beyond / surface.medium->ior;
 }
 
 bool uses_roulette(const Settings& settings, int bounces) {
@@ -38,55 +39,118 @@ bool survives_roulette(const Settings& settings, PathState& path, float roulette
   return true;
 }
 
-void apply_bsdf_sample(const Settings& settings, PathVertex& vertex) {
-  PathState& path = *vertex.path;
-  const BsdfSample& sample = vertex.bsdf_sample;
-  path.throughput *= sample.weight;
-  path.eta_scale *= sample.eta_scale;
+// Sets the next ray of vertex i.
+void set_next_ray(const VertexBatch& batch, std::size_t i, PathState& path) {
+  const SurfaceInteraction& surface = batch.surface[i];
+  const bool through = batch.is_transmission[i];
+  set_spawned_ray(*surface.hit, *surface.point, glm::dvec3(batch.wi[i]), through, path.ray);
+  if (through) path.medium = *surface.medium_beyond;
+  path.ray.side = path.medium.side;
+}
+
+void apply_bsdf_sample(const Settings& settings, const VertexBatch& batch, std::size_t i) {
+  PathState& path = *batch.path[i];
+  path.throughput *= batch.weight[i];
+  path.eta_scale *= batch.eta_scale[i];
   path.ends = !(max_component(path.throughput) > 0);
-  if (sample.is_null) {  // direct light was sampled at the last bounce, through this surface, too
+  if (batch.is_null[i]) {  // direct light was sampled at the last bounce, through this surface, too
     if (++path.null_interactions > kFreeNullInteractions) {
-      path.ends = path.ends || vertex.roulette >= kMaxSurvival;
+      path.ends = path.ends || batch.roulette[i] >= kMaxSurvival;
       path.throughput /= kMaxSurvival;
     }
   } else {
-    path.bounce_context = vertex.light_context;
-    path.bsdf_pdf = sample.pdf;
+    if (batch.has_lights) path.bounce_context = batch.light_context[i];
+    path.bsdf_pdf = batch.pdf[i];
     ++path.bounces;
-    path.ends = path.ends || !survives_roulette(settings, path, vertex.roulette);
+    path.ends = path.ends || !survives_roulette(settings, path, batch.roulette[i]);
   }
-  if (path.ends) return;
-  const SurfaceInteraction& surface = vertex.surface;
-  path.next = spawn_ray(*surface.hit, *surface.point, glm::dvec3(sample.wi), sample.is_transmission);
-  path.next_medium = sample.is_transmission ? surface.medium_beyond : surface.medium;
-  path.next.side = path.next_medium.side;
+  if (!path.ends) set_next_ray(batch, i, path);
+}
+
+// Samples the BSDF of a vertex that has a Bsdf.
+void sample_bsdf(VertexBatch& batch, std::size_t i) {
+  const BsdfSample sample = batch.bsdf[i]->sample(batch.lobe[i], {batch.u[i], batch.v[i]});
+  batch.wi.set(i, sample.wi);
+  batch.weight.set(i, sample.weight);
+  batch.pdf[i] = sample.pdf;
+  batch.eta_scale[i] = sample.eta_scale;
+  batch.is_transmission[i] = sample.is_transmission;
+  batch.is_null[i] = sample.is_null;
+}
+
+// Draws the numbers that choose lobes, for the vertices whose BSDFs have several.
+void draw_lobes(VertexBatch& batch) {
+  const auto has_lobes = [&](std::size_t i) { return batch.has_bsdf[i] && batch.bsdf[i]->has_lobes(); };
+  std::size_t first = 0;
+  while (first < batch.count && !has_lobes(first)) ++first;
+  if (first == batch.count) return;
+  batch.samplers.draw(batch.count, batch.lobe.data());
+  for (std::size_t i = first; i < batch.count; ++i) {
+    if (has_lobes(i)) batch.samplers.take_number(i);
+  }
+}
+
+// Draws the numbers for Russian roulette, for the vertices that use it.
+void draw_roulette(const Settings& settings, VertexBatch& batch) {
+  VertexRow<bool> uses;
+  bool any = false;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const PathState& path = *batch.path[i];
+    uses[i] = uses_roulette(settings, path.bounces + 1) || path.null_interactions >= kFreeNullInteractions;
+    any |= uses[i];
+  }
+  if (!any) return;
+  batch.samplers.draw(batch.count, batch.roulette.data());
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (uses[i]) batch.samplers.take_number(i);
+  }
+}
+
+bool is_diffuse(const MaterialPoint& material) {
+  return material.type == MaterialType::Diffuse || material.type == MaterialType::Emissive;
 }
 
 }  // namespace
 
-void make_bsdfs(std::span<PathVertex> vertices) {
-  for (PathVertex& vertex : vertices) {
-    if (!vertex.active) continue;
-    const SurfaceInteraction& surface = vertex.surface;
-    vertex.bsdf.emplace(*surface.material, surface.point->normal, surface.hit->wo, relative_index(surface),
-                        surface.inside);
+void make_bsdfs(VertexBatch& batch) {
+  for_each_active(batch, [&](std::size_t i) {
+    const SurfaceInteraction& surface = batch.surface[i];
+    const glm::vec3 normal = surface.point->normal;
+    batch.normal.set(i, normal);
+    batch.albedo.set(i, surface.material->base_color);
+    batch.has_bsdf[i] = !is_diffuse(*surface.material);
+    if (batch.has_bsdf[i]) {
+      batch.bsdf[i].emplace(*surface.material, normal, surface.hit->wo, relative_index(surface), surface.inside);
+    }
+  });
+}
+
+BsdfValue evaluate_bsdf(const VertexBatch& batch, std::size_t i, glm::vec3 wi) {
+  if (batch.has_bsdf[i]) return batch.bsdf[i]->evaluate(wi);
+  const float pdf = square_to_cosine_hemisphere_pdf({0, 0, glm::dot(wi, batch.normal[i])});
+  return {batch.albedo[i] * pdf, pdf};
+}
+
+void sample_bsdfs(const Settings& settings, VertexBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const PathState& path = *batch.path[i];
+    batch.samplers.set(i, path.sampler);
+    batch.samplers.start_bounce(i, path.bounces + path.null_interactions);
+    batch.eta_scale[i] = 1;
+    batch.is_transmission[i] = batch.is_null[i] = false;
+  }
+  batch.samplers.draw_pairs(batch.count, batch.u.data(), batch.v.data());
+  batch.samplers.take_pairs(batch.count);
+  draw_lobes(batch);
+  draw_roulette(settings, batch);
+  sample_diffuse(batch);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (batch.has_bsdf[i]) sample_bsdf(batch, i);
   }
 }
 
-void sample_bsdfs(const Settings& settings, std::span<PathVertex> vertices) {
-  for (PathVertex& vertex : vertices) {
-    const PathState& path = *vertex.path;
-    Sampler& sampler = vertex.path->sampler;
-    sampler.start_bounce(path.bounces + path.null_interactions);
-    const glm::vec2 place = sampler.next2();
-    vertex.bsdf_sample = vertex.bsdf->sample(vertex.bsdf->has_lobes() ? sampler.next() : 0, place);
-    const bool uses = uses_roulette(settings, path.bounces + 1) || path.null_interactions >= kFreeNullInteractions;
-    vertex.roulette = uses ? sampler.next() : 0;
-  }
-}
-
-void apply_bsdf_samples(const Settings& settings, std::span<PathVertex> vertices) {
-  for (PathVertex& vertex : vertices) apply_bsdf_sample(settings, vertex);
+void apply_bsdf_samples(const Settings& settings, VertexBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) apply_bsdf_sample(settings, batch, i);
 }
 
 }  // namespace fathom::runtime

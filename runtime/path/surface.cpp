@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <glm/geometric.hpp>
 
 #include "runtime/field/field.h"
 #include "vm/program/check.h"
@@ -11,39 +10,37 @@
 namespace fathom::runtime {
 namespace {
 
-// Minimum cosine between a normal and wo, so that the normal at a grazing hit still faces the ray.
-constexpr float kMinCosine = 1e-4f;
-// Distance from the surface at which a new ray starts, in d_f: float cannot mistake the sides there. The part of d_f
-// that comes from cancellation is a loose bound, of which twice is enough.
-constexpr float kOffsetErrors = 16, kMagnitudeErrors = 2;
-// Maximum of that distance, in bands: 0.3 % of the subject's size. Rays that start closer than d_f are marched in
-// double.
-constexpr float kMaxOffset = 32;
-
-// Share of a clear distance that is used: a ray must not begin where rounding may put the next surface.
-constexpr float kTrusted = 0.98f;
-
-// Normal that faces the ray. `exact`: the normal is the gradient's direction. Otherwise rounding or a crease turned
-// the gradient away from the ray, and the normal is turned back just far enough.
-struct FacingNormal {
-  glm::vec3 normal;
-  bool exact;
-};
-FacingNormal facing_normal(glm::vec3 gradient, const Hit& hit) {
-  const float length = std::sqrt(glm::dot(gradient, gradient));
-  if (!(length > 0 && length < INFINITY)) return {hit.wo, false};
-  const glm::vec3 normal = gradient * (static_cast<float>(hit.side) / length);
-  const float cosine = glm::dot(normal, hit.wo);
-  if (cosine > 0) return {normal, true};
-  const glm::vec3 turned = normal + (kMinCosine - cosine) * hit.wo;
-  const float squared = glm::dot(turned, turned);
-  return {squared > kMinCosine * kMinCosine ? turned / std::sqrt(squared) : hit.wo, false};
+void set_rows(std::span<const Hit> hits, SurfaceRows& rows) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const Hit& hit = hits[i];
+    float size = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto coordinate = static_cast<float>(hit.position[axis]);
+      rows.position[axis][i] = coordinate;
+      rows.wo[axis][i] = hit.wo[axis];
+      size = std::max(size, std::abs(coordinate));
+    }
+    rows.size[i] = size;
+    rows.side[i] = static_cast<float>(hit.side);
+    rows.width[i] = hit.width;
+  }
 }
 
-// Returns the distance from the hit within which rays that leave a convex solid meet nothing.
-float clear_distance(float convex, float size, float offset, const Field& field) {
-  const float error = kDistanceError * (std::max(size, std::abs(convex)) + field.cancellation);
-  return std::max(0.0f, kTrusted * (convex - 2 * error) * field.inv_lipschitz - offset);
+// Replaces the surfaces at hits whose coordinates are so coarse that float gives a coarse normal, perhaps of another
+// surface.
+void evaluate_coarse_hits(const Field& field, std::span<const Hit> hits, SurfaceRows& rows,
+                          std::span<std::uint32_t> surface, vm::Workspace& workspace) {
+  const float most = kMaxOffset * field.band;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const float least = kDistanceError * (kOffsetErrors * rows.size[i] + kMagnitudeErrors * field.cancellation);
+    if (!(least > most)) [[likely]]
+      continue;
+    const vm::SurfaceValue exact = field.regions ? field.regions->evaluate_surface(hits[i].position, workspace)
+                                                 : vm::evaluate_surface(*field.surface, hits[i].position, workspace);
+    for (int axis = 0; axis < 3; ++axis) rows.gradient[axis][i] = static_cast<float>(exact.gradient[axis]);
+    surface[i] = exact.surface;
+    rows.convex[i] = 0;
+  }
 }
 
 }  // namespace
@@ -51,43 +48,28 @@ float clear_distance(float convex, float size, float offset, const Field& field)
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace) {
   CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
-  alignas(64) std::array<float, kSurfaceBatch> x, y, z, distance, gx, gy, gz, convex;
+  SurfaceRows rows;
+  alignas(64) std::array<float, kSurfaceBatch> distance;
   alignas(64) std::array<std::uint32_t, kSurfaceBatch> surface;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
-    x[i] = static_cast<float>(hits[i].position.x);
-    y[i] = static_cast<float>(hits[i].position.y);
-    z[i] = static_cast<float>(hits[i].position.z);
-  }
-  const vm::Points places{x.data(), y.data(), z.data()};
-  const vm::SurfaceValues values{distance.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()};
+  set_rows(hits, rows);
+  const vm::Points places{rows.position[0], rows.position[1], rows.position[2]};
+  const vm::SurfaceValues values{distance.data(),  rows.gradient[0], rows.gradient[1],
+                                 rows.gradient[2], surface.data(),   rows.convex};
   if (field.regions) {
     field.regions->evaluate_surface(places, hits.size(), values, workspace);
   } else {
     vm::evaluate_surface(*field.surface, places, hits.size(), values, workspace);
   }
+  evaluate_coarse_hits(field, hits, rows, surface, workspace);
+  set_surface_geometry(field, hits.size(), rows);
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    glm::vec3 gradient{gx[i], gy[i], gz[i]};
-    const float size = std::max({1.0f, std::abs(x[i]), std::abs(y[i]), std::abs(z[i])});
-    const float least = kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
-    const float most = kMaxOffset * field.band;
-    if (least > most) {
-      // Coordinates this coarse give a coarse normal, perhaps of another surface.
-      const vm::SurfaceValue exact = field.regions
-                                         ? field.regions->evaluate_surface(hits[i].position, workspace)
-                                         : vm::evaluate_surface(*field.surface, hits[i].position, workspace);
-      gradient = glm::vec3(exact.gradient);
-      surface[i] = exact.surface;
-      convex[i] = 0;
-    }
     CHECK(surface[i] < scene.surfaces.size(), "a tag of the surface program has no surface");
-    const FacingNormal found = facing_normal(gradient, hits[i]);
-    points[i].normal = found.normal;
-    points[i].surface = surface[i];
-    points[i].material = scene.surfaces[surface[i]].material;
-    points[i].offset = std::max(2 * hits[i].width, std::min(least, most));
-    points[i].clear = found.exact && hits[i].side > 0 && !field.far_levels.used()
-                          ? clear_distance(convex[i], size, points[i].offset, field)
-                          : 0;
+    SurfacePoint& point = points[i];
+    for (int axis = 0; axis < 3; ++axis) point.normal[axis] = rows.normal[axis][i];
+    point.surface = surface[i];
+    point.material = scene.surfaces[surface[i]].material;
+    point.offset = rows.offset[i];
+    point.clear = rows.clear[i];
   }
 }
 

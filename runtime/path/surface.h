@@ -12,6 +12,7 @@
 #include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
 #include "runtime/march/ray.h"
+#include "runtime/path/surface_lanes.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::runtime {
@@ -34,8 +35,6 @@ struct SurfacePoint {
   // nothing: the solid is convex within this distance, and a ray that leaves a convex solid does not meet it again.
   float clear;
 };
-
-inline constexpr std::size_t kSurfaceBatch = 256;
 
 // Sets points[i], except its `place`, to the surface at hits[i] of `field`, which is the scene's or a medium's. Takes
 // at most kSurfaceBatch hits. A gradient that is zero or not finite gives the normal wo.
@@ -62,15 +61,21 @@ inline glm::dvec3 spawn_origin(const Hit& hit, const SurfacePoint& point, bool t
   return hit.position + along * glm::dvec3(point.normal);
 }
 
-// Returns the ray from spawn_origin() along `direction`, of unit length. Inline, so that it stays in registers.
-inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
+// Sets the ray from spawn_origin() along `direction`, of unit length, without its end. In place: the stages' copies
+// of whole rays would wait for the stores that have just filled them.
+inline void set_spawned_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through, Ray& ray) {
   // Cosine below which the normal's error might let the ray meet the surface again.
   constexpr float kMinLeaving = 0x1p-6f;
-  Ray ray{spawn_origin(hit, point, through), direction};
+  ray.origin = spawn_origin(hit, point, through);
+  ray.direction = direction;
   const float cosine = glm::dot(point.normal, glm::vec3(direction));
   ray.side = through ? -hit.side : hit.side;
   ray.slope = std::abs(cosine);
   ray.clear = !through && cosine > kMinLeaving ? point.clear : 0;
+}
+inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
+  Ray ray;
+  set_spawned_ray(hit, point, direction, through, ray);
   return ray;
 }
 

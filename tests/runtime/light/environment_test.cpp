@@ -203,6 +203,28 @@ TEST_CASE("environment: a sky with its sun is sampled without bias", "[lights]")
   CHECK(e.error < 0.01 * level);
 }
 
+TEST_CASE("environment: the radiance of many rays is that of each", "[lights]") {
+  const std::string sun = R"("lights": {"sun": {"type": "directional", "direction": [0, -1, 0.5], "angle": 5}})";
+  const std::string gradient = R"("background": {"bottom": [0.1, 0.3, 0.7], "top": [1.5, 0.9, 0.2]})";
+  for (const std::string& settings : {gradient, gradient + "," + sun, std::string(kSky)}) {
+    CAPTURE(settings);
+    const Environment environment(scene_with(settings), nullptr);
+    BackgroundRows rows;
+    const std::size_t count = BackgroundRows::kCapacity - 1;
+    const auto direction = [](std::size_t i) {
+      return direction_at(1 - 2 * static_cast<double>(i) / 62, 0.37 * static_cast<double>(i));
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      for (int axis = 0; axis < 3; ++axis) rows.direction[axis][i] = direction(i)[axis];
+    }
+    environment.set_radiance(count, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3 expected = environment.radiance(direction(i));
+      CHECK(glm::vec3(rows.radiance[0][i], rows.radiance[1][i], rows.radiance[2][i]) == expected);
+    }
+  }
+}
+
 TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[lights]") {
   const Environment dark(scene_with(R"("film": {})"), nullptr);
   CHECK_FALSE(dark.emits());

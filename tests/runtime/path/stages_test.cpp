@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 #include <vector>
 
 #include "runtime/path/camera_rays.h"
@@ -50,7 +51,8 @@ TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[ren
   for (std::uint32_t id = 0; id < 8; ++id) ray_hits.push_back({id, statuses[id]});
   for (const bool passes : {false, true}) {
     CAPTURE(passes);
-    const RayHitGroups groups = group_ray_hits(ray_hits, paths, passes);
+    std::vector<RayHit> grouped;
+    const RayHitGroups groups = group_ray_hits(ray_hits, paths, passes, grouped);
     CHECK(ids_of(groups.ended_shadow_rays) == (passes ? Ids{3, 5} : Ids{1, 3, 5, 7}));
     CHECK(ids_of(groups.shadow_hits) == (passes ? Ids{1, 7} : Ids{}));
     CHECK(ids_of(groups.surface_hits) == Ids{0, 4});
@@ -88,12 +90,12 @@ TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium",
   begin_paths(context, keys, ids, paths, scratch);
   const PathState& path = paths[2];
   const CameraRay expected = context.camera.ray(2.5, 1.5);
-  CHECK(path.next.origin == expected.origin);
-  CHECK(path.next.direction == expected.direction);
-  CHECK(path.next.side == -1);
-  CHECK(path.next_medium.field == 1);
-  CHECK(path.next_medium.ior == 1.25f);
-  CHECK(path.next_medium.absorption == glm::vec3(1, 2, 3));
+  CHECK(path.ray.origin == expected.origin);
+  CHECK(path.ray.direction == expected.direction);
+  CHECK(path.ray.side == -1);
+  CHECK(path.medium.field == 1);
+  CHECK(path.medium.ior == 1.25f);
+  CHECK(path.medium.absorption == glm::vec3(1, 2, 3));
   CHECK(path.result.number == 5);
   CHECK((!path.ends && !path.has_shadow_ray && path.bounces == 0));
   CHECK(paths[0].key.x == 3);
@@ -156,31 +158,38 @@ TEST_CASE("stages: a BSDF sample is a bounce, or a null interaction", "[render]"
   point.normal = {0, 1, 0};
   point.offset = 0.125f;
   std::vector<PathState> paths(3);
-  std::vector<PathVertex> vertices(3);
+  const auto batch = std::make_unique<VertexBatch>();
+  batch->count = 3;
+  const BsdfSample samples[] = {
+      {.wi = {0, 1, 0}, .weight = glm::vec3(0.5f), .pdf = 0.25f},
+      {.wi = {0, -1, 0}, .weight = glm::vec3(0.75f), .is_transmission = true, .is_null = true},
+      {.wi = {0, 1, 0}, .weight = glm::vec3(0)}};
   for (std::size_t i = 0; i < 3; ++i) {
     paths[i] = {};
     paths[i].throughput = glm::vec3(1);
     paths[i].eta_scale = 1;
-    vertices[i].path = &paths[i];
-    vertices[i].surface.hit = &hit;
-    vertices[i].surface.point = &point;
-    vertices[i].surface.medium.ior = 1;
-    vertices[i].surface.medium_beyond.ior = 1.5f;
-    vertices[i].surface.medium_beyond.side = -1;
+    paths[i].medium.ior = 1;
+    batch->path[i] = &paths[i];
+    batch->own_beyond[i].ior = 1.5f;
+    batch->own_beyond[i].side = -1;
+    batch->surface[i] = {&hit, &point, &paths[i].medium, nullptr, &batch->own_beyond[i], false};
+    batch->wi.set(i, samples[i].wi);
+    batch->weight.set(i, samples[i].weight);
+    batch->pdf[i] = samples[i].pdf;
+    batch->eta_scale[i] = 1;
+    batch->is_transmission[i] = samples[i].is_transmission;
+    batch->is_null[i] = samples[i].is_null;
   }
-  vertices[0].bsdf_sample = {.wi = {0, 1, 0}, .weight = glm::vec3(0.5f), .pdf = 0.25f};
-  vertices[1].bsdf_sample = {.wi = {0, -1, 0}, .weight = glm::vec3(0.75f), .is_transmission = true, .is_null = true};
-  vertices[2].bsdf_sample = {.wi = {0, 1, 0}, .weight = glm::vec3(0)};
-  apply_bsdf_samples(settings, vertices);
+  apply_bsdf_samples(settings, *batch);
   CHECK((paths[0].bounces == 1 && paths[0].null_interactions == 0 && paths[0].bsdf_pdf == 0.25f));
   CHECK((paths[1].bounces == 0 && paths[1].null_interactions == 1 && paths[1].bsdf_pdf == 0));
   CHECK((!paths[0].ends && !paths[1].ends && paths[2].ends));
   CHECK(paths[0].throughput == glm::vec3(0.5f));
-  CHECK(paths[0].next.origin == glm::dvec3(0, 0.125, 0));
-  CHECK(paths[0].next_medium.ior == 1);
-  CHECK(paths[1].next.origin == glm::dvec3(0, -0.125, 0));
-  CHECK(paths[1].next_medium.ior == 1.5f);
-  CHECK(paths[1].next.side == -1);
+  CHECK(paths[0].ray.origin == glm::dvec3(0, 0.125, 0));
+  CHECK(paths[0].medium.ior == 1);
+  CHECK(paths[1].ray.origin == glm::dvec3(0, -0.125, 0));
+  CHECK(paths[1].medium.ior == 1.5f);
+  CHECK(paths[1].ray.side == -1);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "runtime/path/surface.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 
 #include "runtime/field/field.h"
 #include "tests/runtime/scenes.h"
@@ -36,6 +38,38 @@ TEST_CASE("surface: each object's material is its own", "[runtime]") {
 TEST_CASE("surface: without a gradient the normal is the way back", "[runtime]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   CHECK(find(scene, {{0, 0, 0}, {0, 0, 1}, 1, 0}).normal == glm::vec3(0, 0, 1));
+}
+
+TEST_CASE("surface: a gradient that faces away is turned just far enough", "[runtime]") {
+  const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
+  const Field field = make_field(scene);
+  SurfaceRows rows{};
+  const glm::vec3 wo = glm::normalize(glm::vec3(1, -0.25f, 0.5f));
+  // Gradients: across wo, away from it, of no length, not finite, and towards wo.
+  const glm::vec3 across = glm::normalize(glm::vec3(0.25f, 1, 0) - 1e-3f * wo);
+  const glm::vec3 gradients[] = {across, -wo, glm::vec3(0), {INFINITY, 0, 0}, {NAN, 0, 1}, 3.0f * wo};
+  for (std::size_t i = 0; i < std::size(gradients); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      rows.gradient[axis][i] = gradients[i][axis];
+      rows.wo[axis][i] = wo[axis];
+    }
+    rows.size[i] = 1;
+    rows.side[i] = 1;
+    rows.convex[i] = 0.5f;
+    rows.width[i] = 1e-7f;
+  }
+  set_surface_geometry(field, std::size(gradients), rows);
+  const auto normal = [&](std::size_t i) {
+    return glm::vec3(rows.normal[0][i], rows.normal[1][i], rows.normal[2][i]);
+  };
+  CHECK(glm::dot(normal(0), wo) == Approx(1e-4).epsilon(0.01));
+  CHECK(glm::length(normal(0)) == Approx(1));
+  CHECK(glm::length(normal(0) - across) < 2e-3f);
+  for (const std::size_t i : {1, 2, 3, 4}) CHECK(normal(i) == wo);
+  CHECK(glm::length(normal(5) - wo) < 1e-6f);
+  // A ray's way is clear only where the normal is the gradient's.
+  for (const std::size_t i : {0, 1, 2, 3, 4}) CHECK(rows.clear[i] == 0);
+  CHECK(rows.clear[5] > 0.4f);
 }
 
 TEST_CASE("surface: new rays start clear of the surface, on the side asked for", "[runtime]") {
