@@ -11,6 +11,7 @@
 
 #include "compiler/analysis/area_lights.h"
 #include "compiler/analysis/extent.h"
+#include "compiler/analysis/formula_cells.h"
 #include "compiler/analysis/lints.h"
 #include "compiler/analysis/media.h"
 #include "compiler/analysis/nan_regions.h"
@@ -165,9 +166,11 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
     surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
   const NodeFacts& all = known[optimised.root];
+  const FormulaCells cells = formula_cells(optimised.graph, optimised.root, known).value_or(FormulaCells{{}, 0});
   return CompiledField{
-      std::move(*distance), std::move(*surface), all.box,      contents(optimised.graph, optimised.root, known),
-      all.lipschitz,        all.cancellation,    all.certified};
+      std::move(*distance), std::move(*surface), all.box,       contents(optimised.graph, optimised.root, known),
+      all.lipschitz,        all.cancellation,    all.certified, cells.box,
+      cells.rest_lipschitz};
 }
 
 // Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
@@ -226,9 +229,9 @@ std::size_t count_nodes(const Scene& scene) {
   return count;
 }
 
-std::string summarise(std::size_t nodes, NodeFacts known, glm::dvec3 origin) {
+std::string summarise(std::size_t nodes, NodeFacts known, bool in_cells, glm::dvec3 origin) {
   known.box = known.box.moved(origin);
-  return fmt::format("{} {}, {}", nodes, nodes == 1 ? "node" : "nodes", describe(known));
+  return fmt::format("{} {}, {}", nodes, nodes == 1 ? "node" : "nodes", describe(known, in_cells));
 }
 
 // Warns when the float error of distances near the surface exceeds a ten-thousandth of the distance from the camera
@@ -336,7 +339,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(*formulas),
                        count_nodes(field),
                        ""};
-  result.summary = summarise(result.node_count, known[field.root], origin);
+  result.summary = summarise(result.node_count, known[field.root], !result.formula_box.empty(), origin);
   return result;
 }
 

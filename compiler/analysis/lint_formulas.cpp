@@ -15,6 +15,7 @@ void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
   }
   if (!any) return;
   const FieldGraph field(scene);
+  if (field.in_cells()) return;
   const Graph& graph = field.graph();
   std::set<std::uint32_t> warned;
   for (NodeId id = 0; id <= field.root(); ++id) {
@@ -27,7 +28,7 @@ void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
         fmt::format("no bound on how fast this {} changes: the picture may be wrong", field.place(id).type),
         fmt::format("{}steps trust {:.3g}, a guess from slopes that were seen",
                     searched ? "the slope of this has none; " : "", field.known(id).lipschitz),
-        {"rays can pass through what is steeper; avoid jumps (floor, step, sign, mod) and infinite "
+        {"rays can pass through what is steeper; avoid jumps (floor, step, sign, mod) all over the box and infinite "
          "slopes (sqrt or log at 0, tan), or keep them out of the box"});
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/analysis/formula_cells.h"
 #include "compiler/derive/formula_bound.h"
 #include "compiler/passes/passes.h"
 #include "compiler/shapes/bounds.h"
@@ -63,6 +64,8 @@ std::vector<NodeId> FieldGraph::children(NodeId id) const {
   return {graph().children(all[0])[0]};
 }
 
+bool FieldGraph::in_cells() const { return formula_cells(graph(), root(), known_).has_value(); }
+
 bool FieldGraph::estimates(NodeId id) const {
   if (known_[id].certified) return false;
   const std::vector<NodeId> below = children(id);
@@ -110,15 +113,16 @@ std::uint32_t FieldGraph::surface(NodeId object) const {
   return static_cast<std::uint32_t>(graph().params(object)[0]);
 }
 
-std::string_view class_of(const NodeFacts& facts) {
-  if (!facts.certified || facts.outside == Exactness::Estimate) return "estimate";
+std::string_view class_of(const NodeFacts& facts, bool in_cells) {
+  if (!facts.certified || facts.outside == Exactness::Estimate) return in_cells ? "in cells" : "estimate";
   return facts.outside == Exactness::Exact ? "exact" : "bound";
 }
 
 Report make_report(const Scene& scene, const std::vector<Surface>& surfaces) {
   const FieldGraph field(scene);
   Report report;
-  report.certified = field.known(field.root()).certified;
+  report.in_cells = field.in_cells();
+  report.certified = field.known(field.root()).certified || report.in_cells;
   for (const NodeId object : field.objects(surfaces)) {
     const std::uint32_t surface = field.surface(object);
     ObjectReport& row = report.objects.emplace_back();

@@ -48,15 +48,17 @@ struct Report {
   static constexpr std::size_t kMaxSearched = 20;
 
   std::vector<ObjectReport> objects;
-  bool certified = true;  // true if every constant is proved
+  bool certified = true;  // true if every step length is proved
+  // True if some constants are proved only cell by cell (compiler/analysis/formula_cells.h): those of `estimates`.
+  bool in_cells = false;
   std::vector<Estimate> estimates;
 };
 
 // Makes the report. `scene` is the graph before the first pass. Its Paint nodes are indices into `surfaces`.
 Report make_report(const Scene& scene, const std::vector<Surface>& surfaces);
 
-// Returns "exact", "bound" or "estimate": how far the field is a distance outside the solid.
-std::string_view class_of(const NodeFacts& facts);
+// Returns "exact", "bound", "in cells" or "estimate": how far the field is a distance outside the solid.
+std::string_view class_of(const NodeFacts& facts, bool in_cells);
 
 // Facts about a graph that the report, the lints and the probe share.
 class FieldGraph {
@@ -72,6 +74,8 @@ class FieldGraph {
   double cost(NodeId id) const { return cost_[id]; }
   // Returns the node's constant before levelling.
   double steepness(NodeId id) const { return steepness_[id]; }
+  // True if every constant that is not proved is proved cell by cell.
+  bool in_cells() const;
   // True if the node's constant is not proved, although all of its children's are.
   bool estimates(NodeId id) const;
   // Returns the position of the operation that has no bound, if estimates() is true and the node is a boxed formula.

@@ -27,7 +27,7 @@
 namespace fathom::compiler {
 
 inline constexpr std::array<std::uint8_t, 8> kFileMagic = {0x89, 'F', 'B', 'C', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kFileVersion = 4;
+inline constexpr std::uint32_t kFileVersion = 5;
 
 // Contents of a file in addition to programs and tables.
 struct FileContents {

@@ -293,6 +293,9 @@ void fields(Archive& a, CompiledField& f) {
   field(a, "lipschitz", f.lipschitz, kTiny, kAny);
   field(a, "cancellation", f.cancellation, 0, kAny);
   field(a, "certified", f.certified);
+  field(a, "formula_box_lo", f.formula_box.lo, -kEndless, kEndless);
+  field(a, "formula_box_hi", f.formula_box.hi, -kEndless, kEndless);
+  field(a, "rest_lipschitz", f.rest_lipschitz, 0, kAny);
 }
 
 static void media(Archive& a, CompiledScene& scene) {

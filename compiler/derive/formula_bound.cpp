@@ -60,7 +60,7 @@ class Bisection {
       const Cell steepest = cells_.top();
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
-    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0};
+    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0};
     double smallest = kInfinity;
     for (; !cells_.empty(); cells_.pop()) {
       const vm::SlopeBound& b = cells_.top().bound;
@@ -68,7 +68,9 @@ class Bisection {
       result.most = std::max(result.most, b.value.hi);
       result.lipschitz = std::max(result.lipschitz, b.lipschitz);
       result.float_error = std::max(result.float_error, b.float_error);
-      if (std::isfinite(b.lipschitz) || cells_.top().longest_side() > smallest) continue;
+      if (std::isfinite(b.lipschitz)) continue;
+      result.unbounded_share += share(cells_.top().box);
+      if (cells_.top().longest_side() > smallest) continue;
       smallest = cells_.top().longest_side();
       result.unbounded = cells_.top().box;
     }
@@ -76,6 +78,16 @@ class Bisection {
   }
 
  private:
+  // Returns the share of the whole box that a cell fills. Infinite sides are never cut.
+  double share(const Box& cell) const {
+    double share = 1;
+    for (int i = 0; i < 3; ++i) {
+      const double side = whole_.hi[i] - whole_.lo[i];
+      if (std::isfinite(side) && side > 0) share *= (cell.hi[i] - cell.lo[i]) / side;
+    }
+    return share;
+  }
+
   // `part`: the part of an enclosing cell.
   void add(const Box& box, std::shared_ptr<const vm::PrunedProgram> part) {
     Cell cell{box, specialiser_.enclose_choices(*part, box.lo, box.hi, workspace_), part};
@@ -166,7 +178,7 @@ std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
-  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity};
+  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity, 1};
   return Bisection(*program, box, coordinates_of(graph, formula)).run();
 }
 

@@ -15,7 +15,8 @@ struct FormulaBound {
   double lipschitz;    // of the formula within the box; infinite if the search found no bound
   double seen;         // the steepest gradient that the search evaluated
   double float_error;  // of an evaluation in float, scene units; may be infinite
-  Box unbounded = {};  // the smallest cell without a bound that the search met; empty if there is none
+  double unbounded_share = 0;  // of the box: of the cells without a bound that the search ended with
+  Box unbounded = {};          // the smallest cell without a bound that the search met; empty if there is none
 };
 
 // `box` may have infinite sides. `formula` is a node of numbers.

@@ -15,16 +15,23 @@ constexpr double kInfiniteSide = 1e18;  // replaces an infinite side in the prog
 
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
 
-NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double cancellation, bool certified,
-               const SourceLocation& origin) {
+FormulaProof proof_by(const FormulaBound& bound) {
+  if (std::isfinite(bound.lipschitz)) return FormulaProof::Proved;
+  // Cells are of use only if some of them have a bound.
+  constexpr double kMaxUnbounded = 0.9;
+  return bound.unbounded_share < kMaxUnbounded ? FormulaProof::InCells : FormulaProof::None;
+}
+
+NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz, double cancellation,
+               FormulaProof proof, const SourceLocation& origin) {
   std::vector<double> params;
   for (const glm::dvec3& corner : {box.lo, box.hi}) {
     for (int i = 0; i < 3; ++i) params.push_back(std::clamp(corner[i], -kInfiniteSide, kInfiniteSide));
   }
   // A field that does not change has its box as its only surface, so any constant will do.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
-  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1, certified ? cancellation : 0.0,
-                               certified ? 1.0 : 0.0});
+  params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1,
+                               proof == FormulaProof::Proved ? cancellation : 0.0, static_cast<double>(proof)});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }
@@ -62,18 +69,24 @@ NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const So
   const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
   const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
+  const FormulaProof proof = child.certified ? proof_by(bound) : FormulaProof::None;
   const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
   return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
-                 child.cancellation + magnitude_of(bound.float_error), proved && child.certified, origin);
+                 child.cancellation + magnitude_of(bound.float_error), proof, origin);
 }
 
 }  // namespace
+
+FormulaProof proof_of(const Graph& graph, NodeId bounded) {
+  constexpr std::size_t kProof = 8;  // compiler/shapes/functions.cpp
+  return static_cast<FormulaProof>(static_cast<int>(graph.params(bounded)[kProof]));
+}
 
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin) {
   const FormulaBound bound = bound_formula(maker.graph(), formula, box);
   const bool proved = std::isfinite(bound.lipschitz);
   return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound), magnitude_of(bound.float_error),
-                 proved, origin);
+                 proof_by(bound), origin);
 }
 
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,

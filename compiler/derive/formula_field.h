@@ -14,6 +14,14 @@ namespace fathom::compiler {
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
                   const SourceLocation& origin);
 
+// Proof of a Bounded node's Lipschitz constant.
+enum class FormulaProof {
+  None,     // the constant is a guess, and no cell of the box has a bound
+  Proved,   // the constant holds in the whole box
+  InCells,  // the constant is a guess, but cells of the box have bounds (compiler/analysis/formula_cells.h)
+};
+FormulaProof proof_of(const Graph& graph, NodeId bounded);
+
 // Makes a formula the field of a box with any corners.
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin);
 

@@ -31,7 +31,8 @@ std::string describe(const Box& box) {
   return side(box.lo.x, box.hi.x) + "x" + side(box.lo.y, box.hi.y) + "x" + side(box.lo.z, box.hi.z);
 }
 
-std::string describe(const NodeFacts& k) {
+std::string describe(const NodeFacts& k, bool in_cells) {
+  if (in_cells) return fmt::format("bound {}, proved cell by cell", describe(k.box));
   return fmt::format("bound {}, {} outside, Lipschitz <= {:.4g} ({})", describe(k.box), name(k.outside), k.lipschitz,
                      k.certified ? "proved" : "estimate");
 }

@@ -34,7 +34,8 @@ struct NodeFacts {
 };
 
 // Returns e.g. "bound [-1,1]x[-1,1.5]x[-1,1], exact outside, Lipschitz <= 1 (proved)".
-std::string describe(const NodeFacts& facts);
+// `in_cells`: the constant is proved cell by cell (compiler/analysis/formula_cells.h).
+std::string describe(const NodeFacts& facts, bool in_cells = false);
 
 // Returns e.g. "[-1,1]x[-1,1.5]x[-1,1]", or "empty".
 std::string describe(const Box& box);

@@ -146,6 +146,11 @@ struct CompiledField {
   double lipschitz = 1;   // |f(p) - f(q)| <= lipschitz * |p - q|
   double cancellation = 0;  // of the numbers that cancel in the field, scene units (compiler/shapes/bounds.h)
   bool certified = true;  // `lipschitz` is proved; false: an estimate (a Mandelbulb is in the scene)
+  // Box around formulas whose slope is proved only cell by cell (compiler/analysis/formula_cells.h); empty if there
+  // are none. Outside, the field has no zero except those of the rest of the field, whose Lipschitz constant is
+  // `rest_lipschitz`, 0 without a rest.
+  Box formula_box = {};
+  double rest_lipschitz = 0;
 };
 
 // The interior of all bodies of one transparent material (compiler/analysis/media.h).

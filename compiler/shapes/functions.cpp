@@ -47,8 +47,8 @@ NodeSpec function(Kind kind, std::string_view name, std::string_view doc, std::v
           .derive_facts = know_number};
 }
 
-// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the scale of the float error, 1
-// if the constant is proved.
+// Bounded. Derived: the box's corners, the Lipschitz constant within the box, the scale of the float error, and the
+// constant's FormulaProof (compiler/derive/formula_field.h).
 NodeFacts know_bounded(Params p, std::span<const NodeFacts>) {
   NodeFacts k;
   constexpr double kEndless = 1e18, kInfinity = std::numeric_limits<double>::infinity();

@@ -93,8 +93,9 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
       costs = fmt::format("{} makes steps {:.3g}x shorter", text(object.costliest->place, source),
                           object.costliest->times);
     }
-    rows.push_back({object.name, std::string(class_of(object.facts)), fmt::format("{:.4g}", object.lipschitz),
-                    fmt::format("{:.3g}", 1 / object.lipschitz), describe(object.facts.box), costs});
+    rows.push_back({object.name, std::string(class_of(object.facts, report.in_cells)),
+                    fmt::format("{:.4g}", object.lipschitz), fmt::format("{:.3g}", 1 / object.lipschitz),
+                    describe(object.facts.box), costs});
   }
   return table(rows);
 }
@@ -112,7 +113,7 @@ std::string describe_operation(compiler::Span span, const compiler::Source& sour
 }
 
 std::string certificate(const compiler::Report& report, const compiler::Source& source) {
-  if (report.certified) return "certified: every step length is proved\n";
+  if (report.certified && !report.in_cells) return "certified: every step length is proved\n";
   std::string nodes, operations;
   std::size_t listed = 0;
   for (const compiler::Estimate& estimate : report.estimates) {
@@ -122,6 +123,9 @@ std::string certificate(const compiler::Report& report, const compiler::Source& 
   }
   if (listed > compiler::Report::kMaxSearched) {
     nodes += fmt::format(", and {} more", listed - compiler::Report::kMaxSearched);
+  }
+  if (report.in_cells) {
+    return fmt::format("certified: every step length is proved, cell by cell within {}\n{}", nodes, operations);
   }
   return fmt::format("not certified: nothing is proved of {}\n{}", nodes, operations);
 }
@@ -153,8 +157,8 @@ std::string report_json(const compiler::CompiledScene& scene, const compiler::Re
     }
     const compiler::NodeFacts& known = object.facts;
     out += line({{"object", object.name},
-                 {"class", class_of(known)},
-                 {"certified", known.certified},
+                 {"class", class_of(known, report.in_cells)},
+                 {"certified", known.certified || report.in_cells},
                  {"lipschitz", object.lipschitz},
                  {"step", 1 / object.lipschitz},
                  {"box", {{"lo", json(known.box.lo)}, {"hi", json(known.box.hi)}}},

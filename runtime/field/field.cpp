@@ -41,7 +41,8 @@ double max_informative_length(const compiler::CompiledField& scene, double exten
   constexpr int kLengths = 14, kLines = 32;
   // kTold: share of the slope's range that the Lipschitz constant alone allows. kNear: share of the extent.
   constexpr double kTold = 0.8, kNear = 1e-4;
-  if (scene.certified || scene.contents.empty()) return std::numeric_limits<double>::infinity();
+  if (scene.certified || scene.contents.empty() || !scene.formula_box.empty())
+    return std::numeric_limits<double>::infinity();
   vm::Workspace workspace;
   std::vector<Line> lines;
   for (int i = 1; i <= kLines; ++i) {
@@ -82,7 +83,18 @@ int room_of(const Field& field, const compiler::CompiledField& compiled) {
 void become_large(Field& field, const FarLevels& levels) {
   field.far_levels = levels;
   field.convex = false;
-  field.max_informative_length = 0;
+  if (!field.cells) field.max_informative_length = 0;
+}
+
+// Makes marchers step by bounds cell by cell. Nothing else is known of the field's slope, so the search in double
+// relies on interval arithmetic alone.
+void add_cells(Field& field, const compiler::CompiledField& compiled) {
+  field.cells = std::make_shared<const SlopeCells>(compiled.distance, compiled.formula_box, compiled.rest_lipschitz);
+  field.lipschitz = std::numeric_limits<double>::infinity();
+  field.inv_lipschitz = 0;
+  field.max_informative_length = std::numeric_limits<double>::infinity();
+  field.cancellation = std::max(field.cancellation, field.cells->cancellation());
+  field.convex = false;
 }
 
 }  // namespace
@@ -115,6 +127,7 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   field.max_informative_length = max_informative_length(compiled, extent);
   field.inv_lipschitz = static_cast<float>(1 / compiled.lipschitz);
   field.cancellation = static_cast<float>(compiled.cancellation);
+  field.value_cancellation = static_cast<double>(field.cancellation);
   field.band = static_cast<float>(kBand * extent);
   // Minimum share of convex shapes in the program's cost. Computing the convexity radius pays off when the radius
   // usually exceeds the distance.
@@ -126,6 +139,7 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
   const bool bounded = compiled.bound.empty() || compiled.bound.finite();
   field.far = far.value_or(bounded ? std::numeric_limits<double>::infinity() : std::max(kDefaultFar, 1e3 * extent));
   if (!bounded) field.far = std::min(field.far, kFarthest);
+  if (!compiled.formula_box.empty()) add_cells(field, compiled);
   const auto regions = plan_regions(compiled.surface, contents_of(field, compiled), room_of(field, compiled));
   if (regions) become_large(field, regions->far);
   return field;

@@ -10,6 +10,7 @@
 #include "compiler/scene/compiled_scene.h"
 #include "runtime/field/far_levels.h"
 #include "runtime/field/regions.h"
+#include "runtime/field/slope_cells.h"
 #include "vm/program/opcode.h"
 
 namespace fathom::runtime {
@@ -20,11 +21,12 @@ struct Field {
   const vm::VerifiedProgram* distance;
   const vm::VerifiedProgram* surface;  // the same field with `tag` instructions
   compiler::Box bound;                 // the scene's bound with a margin, outside which the field is positive
-  double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|
+  double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|; infinite with `cells`
   double far;  // maximum length of rays, scene units; may be infinite when the bound is finite
   float band;  // distance below which a marcher tries to cross the surface, scene units
   float inv_lipschitz;
-  float cancellation;  // size of the numbers that cancel, scene units (compiler/shapes/bounds.h)
+  float cancellation;         // size of the numbers that cancel in steps, scene units (compiler/shapes/bounds.h)
+  double value_cancellation;  // the same for values, of which `cells` makes steps; otherwise equal
   // Maximum length of an interval, scene units, over which along() tells how steep the field is, tried on some lines
   // near surfaces. Interval arithmetic knows nothing of an iterated map until the interval is tiny. Infinite if the
   // compiler proved the field's Lipschitz constant, 0 for a large scene.
@@ -33,6 +35,9 @@ struct Field {
   // below evaluate to the same bits with regions and without.
   FarLevels far_levels;
   std::shared_ptr<const Regions> regions;  // null unless the scene gains by regions
+  // Bounds cell by cell, if the field has formulas without a bound of their slope (CompiledField::formula_box), or
+  // null. Then `lipschitz` is infinite.
+  std::shared_ptr<const SlopeCells> cells;
   // True if float distances come with a convexity radius (vm::evaluate_convex), which saves evaluations in a scene
   // made mostly of convex shapes. False for large scenes.
   bool convex;
@@ -45,11 +50,19 @@ struct Field {
   // below 0 by more than this error: a field that is 0 over a volume is empty, however its values are rounded.
   double rounding(glm::dvec3 p) const {
     const double place = std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    return vm::kFloatError * 0x1p-29 * (place + static_cast<double>(cancellation));
+    return vm::kFloatError * 0x1p-29 * (place + value_cancellation);
   }
 
   // True if the convexity radius is available, which `evaluator` does not compute.
   bool has_convexity() const { return convex && evaluator == nullptr; }
+
+  // Lipschitz constant of the values that marchers step by, to_steps().
+  double step_lipschitz() const { return cells ? 1 : lipschitz; }
+  // Replace values of evaluate() by those that marchers step by: the same, except in a field with `cells`.
+  void to_steps(vm::Points points, std::size_t count, float* values) const {
+    if (cells) cells->to_radii(points, count, values);
+  }
+  double to_step(double value, glm::dvec3 point) const { return cells ? cells->radius(value, point) : value; }
 
   // Evaluate distances: of many points in float, or of one or many in double. In a large scene the distances are
   // rounded where no surface is near. In float, regions leave the number of instructions per point in the scratch. In

@@ -58,7 +58,7 @@ CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dve
       done_(false),
       range_ratio_(std::isfinite(field.max_informative_length) ? kCostlyRangeRatio : kRangeRatio),
       max_informative_(field.max_informative_length / glm::length(direction)),
-      interval_period_(field.far_levels.used()
+      interval_period_(field.far_levels.used() && !field.cells
                            ? std::max(kMinIntervalPeriod, field.distance->instructions() / kIntervalPeriodShare)
                            : 0),
       next_interval_at_(interval_period_ > 0 ? interval_period_ : kRetryPeriod) {
@@ -75,9 +75,13 @@ void CertifiedSearch::supply(double f, std::uint64_t instructions, RealScratch& 
   result_.instructions += instructions;
   rounding_ = field_->rounding(point());
   if (side_ == 0) side_ = f < -rounding_ ? -1 : 1;
-  if (!std::isfinite(f)) return end(RayHit::Status::Invalid);
-  // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0.
-  const double g = (side_ < 0 ? -f : f) + rounding_;
+  if (!std::isfinite(f)) {
+    if (purpose_ == Purpose::Begin) return end(RayHit::Status::Invalid);
+    undefined_from_ = std::min(undefined_from_, requested_t_);
+  }
+  // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0. A place without a value counts
+  // as solid, so that a surface before it is found: hit() tells it from a surface.
+  const double g = std::isfinite(f) ? (side_ < 0 ? -f : f) + rounding_ : -1;
   switch (purpose_) {
     case Purpose::Begin:
       return begin(g);
@@ -156,7 +160,9 @@ bool CertifiedSearch::process_segment(RealScratch& scratch) {
   }
   if (free) return pass_segment(s);
   const double open = gap.hi - gap.lo, middle = (gap.lo + gap.hi) / 2;
-  if (open <= coarsened(s.gb < 0 ? kRootResolution : kResolution, middle) || !(middle > s.a && middle < s.b)) {
+  // Without a bound on the slope, e.g. next to a jump, intervals know nothing of a short segment either.
+  const bool fine = s.gb >= 0 && std::isfinite(s.fall);
+  if (open <= coarsened(fine ? kResolution : kRootResolution, middle) || !(middle > s.a && middle < s.b)) {
     if (s.gb < 0) {
       find_root(s, std::min(s.b, gap.hi) - std::max(s.a, gap.lo));
       return false;
@@ -272,6 +278,8 @@ CertifiedSearch::IntervalOutcome CertifiedSearch::narrow(Segment& s, RealScratch
       free = line->value.hi < 0;
     }
   }
+  // Intervals leave out places without a value.
+  free = free && s.b < undefined_from_;
   const bool outcome = free || s.fall + s.rise < kProgress * known;
   max_informative_ = outcome ? std::max(max_informative_, kShorter * length) : length / kShorter;
   return free ? IntervalOutcome::Free : outcome ? IntervalOutcome::Slope : IntervalOutcome::Nothing;
@@ -320,6 +328,10 @@ double CertifiedSearch::coarsened(double resolution, double t) const {
 }
 
 void CertifiedSearch::hit(double lo, double hi) {
+  if (hi >= undefined_from_) {
+    requested_t_ = undefined_from_;  // for point()
+    return end(RayHit::Status::Invalid);
+  }
   result_.t = (lo + hi) / 2;
   result_.width = std::max({hi - lo, width_, 0.0});
   end(RayHit::Status::Hit);

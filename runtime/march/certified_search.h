@@ -111,6 +111,7 @@ class CertifiedSearch {
   double level_begin_ = std::numeric_limits<double>::quiet_NaN(), g_level_ = 0;
   double root_level_ = 0;  // value that the search in the bracket looks for
   double width_ = 0;       // width of the interval that may hold the first root, if wider than its bracket
+  double undefined_from_ = std::numeric_limits<double>::infinity();  // nearest t at which the field had no value
   double requested_t_ = 0;
   Purpose purpose_ = Purpose::Begin;
   bool near_miss_ = false, done_ = true;

@@ -23,8 +23,8 @@ namespace fathom::runtime {
 // g(begin) is below 0, the result is a hit at `begin`. The search passes over no root, unless another root follows
 // within 2^-30 max(1, |p|), which is then found instead. An exact 0 is a touch, and a root only if g goes on below 0.
 // `side` 0 means the sign of f at `begin`. A NearMiss has no root, but comes nearer to one than the resolution of
-// 2^-40 max(1, |p|). The search always ends: after kSearchBudget evaluations its resolution becomes ever coarser, and
-// segments that stay open make a NearMiss.
+// 2^-40 max(1, |p|), or of 2^-30 max(1, |p|) where the slope has no bound. The search always ends: after
+// kSearchBudget evaluations its resolution becomes ever coarser, and segments that stay open make a NearMiss.
 CertifiedResult certify(const Field& field, glm::dvec3 origin, glm::dvec3 direction, int side,
                         const RayInterval& interval, RealScratch& scratch);
 

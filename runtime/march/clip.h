@@ -44,6 +44,11 @@ struct RayBlock {
     side[i] = static_cast<std::int8_t>(ray.side);
     id[i] = ray_id;
   }
+  // Adds the part of a ray from `begin` to `end`, distances from its origin. `side` is known.
+  void push_from(std::uint32_t ray_id, glm::dvec3 from, glm::dvec3 along, double begin, double end, int known_side) {
+    push(ray_id, {from, along, end, known_side});
+    entry[count - 1] = begin;
+  }
   // Only after clipping.
   ClipResult clip_result(std::size_t i) const { return static_cast<ClipResult>(result[i]); }
 };

@@ -39,8 +39,13 @@ void Marcher::begin_waiting() {
 
 void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                            std::uint64_t instructions) {
-  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, interval), ray.entry, ray.id,
-                       evaluations, instructions});
+  RayInterval searched = interval;
+  if (field_.cells && resumes_)
+    searched.end = std::min(interval.end, std::max(interval.begin, interval.hint) + field_.cells->stretch());
+  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, searched),
+                       ray,
+                       searched.end,
+                       {evaluations, 0, instructions}});
 }
 
 // Searches as long as enough rays are left to fill the machine's registers, or no other rays are under way.
@@ -71,19 +76,46 @@ void Marcher::evaluate_searches() {
   }
 }
 
-// Reports searched ray i. The last searched ray takes its place.
+// Reports searched ray i, or has it go on in float. The last searched ray takes its place.
 void Marcher::end_search(std::size_t i) {
-  const SearchedRay& ray = searched_[i];
-  const CertifiedResult& found = ray.search.result();
-  if (found.status == RayHit::Status::Invalid) counters_.note_invalid(ray.search.point());
+  const SearchedRay& searched = searched_[i];
+  const CertifiedResult& found = searched.search.result();
   ++counters_.certified;
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
-  report(ray.id, found.status, static_cast<std::int8_t>(found.side), ray.evaluations + found.evaluations,
-         found.evaluations, static_cast<float>(found.width), ray.entry + found.t,
-         ray.instructions + found.instructions);
+  if (!resume(searched)) {
+    if (found.status == RayHit::Status::Invalid) counters_.note_invalid(searched.search.point());
+    report(searched.ray.id, found.status, static_cast<std::int8_t>(found.side),
+           searched.work.evaluations + found.evaluations, found.evaluations, static_cast<float>(found.width),
+           searched.ray.entry + found.t, searched.work.instructions + found.instructions);
+  }
   if (i + 1 < searched_.size()) searched_[i] = std::move(searched_.back());
   searched_.pop_back();
+}
+
+// Has a ray go on in float if the search has proved free only the beginning of what was left of it.
+bool Marcher::resume(const SearchedRay& searched) {
+  const CertifiedResult& found = searched.search.result();
+  const bool missed = found.status == RayHit::Status::Miss || found.status == RayHit::Status::NearMiss;
+  const ClippedRay& ray = searched.ray;
+  if (!missed || searched.end >= ray.length) return false;
+  Work& work = resumed_[ray.id];
+  work.evaluations += searched.work.evaluations + found.evaluations;
+  work.certified += found.evaluations;
+  work.instructions += searched.work.instructions + found.instructions;
+  counters_.instructions += searched.work.instructions + found.instructions;
+  waiting_.push_from(ray.id, ray.origin - ray.entry * ray.direction, ray.direction, ray.entry + searched.end,
+                     ray.entry + ray.length, found.side);
+  return true;
+}
+
+void Marcher::add_work(RayHit& ray_hit) {
+  const auto work = resumed_.find(ray_hit.id);
+  if (work == resumed_.end()) return;
+  ray_hit.evaluations += work->second.evaluations;
+  ray_hit.certified += work->second.certified;
+  ray_hit.instructions += work->second.instructions;
+  resumed_.erase(work);
 }
 
 }  // namespace fathom::runtime

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <unordered_map>
 #include <vector>
 
 #include "runtime/base/stage_clock.h"
@@ -63,6 +64,8 @@ class Marcher {
     std::uint32_t id;
   };
 
+  // True if a ray may go on by step() after a search.
+  void resume_after_search() { resumes_ = true; }
   // Starts clipped rays of `rays`, from the last on, as long as there is room, and removes them from the block. live_
   // counts the rays under way.
   virtual void begin(RayBlock& rays) = 0;
@@ -92,6 +95,8 @@ class Marcher {
   void report(std::uint32_t id, RayHit::Status status, Fields... fields) {
     count(status);
     ray_hits_.emplace_back(id, status, fields...);
+    if (!resumed_.empty()) [[unlikely]]
+      add_work(ray_hits_.back());
     counters_.instructions += ray_hits_.back().instructions;
   }
   // Hands a ray that is no longer live to the search in double, after `evaluations` in float.
@@ -114,26 +119,36 @@ class Marcher {
     counters_.near_misses += status == RayHit::Status::NearMiss;
     counters_.invalid += status == RayHit::Status::Invalid;
   }
+  // Adds the work on the ray before it went on in float.
+  void add_work(RayHit& ray_hit);
   [[noreturn]] static void fail_full();
   void begin_waiting();
   void search();
   void evaluate_searches();
   void end_search(std::size_t i);
 
+  // Work on a ray so far.
+  struct Work {
+    std::uint32_t evaluations = 0;  // in float
+    std::uint32_t certified = 0;    // in double
+    std::uint64_t instructions = 0;
+  };
   // A ray that is being searched in double.
   struct SearchedRay {
     CertifiedSearch search;
-    double entry;  // ClippedRay::entry
-    std::uint32_t id;
-    std::uint32_t evaluations;  // in float
-    std::uint64_t instructions;
+    ClippedRay ray;
+    double end;  // of the search: ray.length, or less if the ray then goes on in float
+    Work work;
   };
+  bool resume(const SearchedRay& searched);
 
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
   std::size_t max_waiting_;         // capacity_, less the rays that are live or searched
+  bool resumes_ = false;
   const std::size_t min_batch_;     // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
+  std::unordered_map<std::uint32_t, Work> resumed_;  // [id] work on rays that went on in float after a search
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].
   std::vector<double> points_[3], values_;
   std::vector<std::uint64_t> instructions_;  // [ray] instructions of the evaluation

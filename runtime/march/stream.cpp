@@ -9,8 +9,8 @@ template <class S>
 LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   constexpr bool kSingle = sizeof(S) == sizeof(float);
   LaneRules<S> rules{};
-  rules.lipschitz = static_cast<S>(field.lipschitz);
-  rules.inv_lipschitz = static_cast<S>(1 / field.lipschitz);
+  rules.lipschitz = static_cast<S>(field.step_lipschitz());
+  rules.inv_lipschitz = static_cast<S>(1 / field.step_lipschitz());
   rules.band = static_cast<S>(field.band);
   rules.cancellation = static_cast<S>(field.cancellation);
   // A double keeps 29 more bits, and the rounding of constants to float does not affect it.
@@ -51,7 +51,9 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
       takes_slope_hint_(!uses_epsilon_),
       max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
       use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
-      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {
+  resume_after_search();
+}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
@@ -97,6 +99,7 @@ void Stream<float>::evaluate() {
     return vm::evaluate_convex(*field_.distance, points, count, distance_.data(), convex_.data(), workspace_);
   }
   field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
+  field_.to_steps(points, count, distance_.data());
   if (field_.regions) {
     for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
   }
@@ -106,7 +109,8 @@ template <>
 void Stream<double>::evaluate() {
   const auto& row = lanes_->row;
   for (std::size_t i = 0; i < static_cast<std::size_t>(live_); ++i) {
-    distance_[i] = field_.evaluate({row[kX][i], row[kY][i], row[kZ][i]}, real_scratch_, instructions_[i]);
+    const glm::dvec3 point(row[kX][i], row[kY][i], row[kZ][i]);
+    distance_[i] = field_.to_step(field_.evaluate(point, real_scratch_, instructions_[i]), point);
   }
 }
 

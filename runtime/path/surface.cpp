@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "runtime/field/field.h"
+#include "runtime/path/jump_normals.h"
 #include "vm/program/check.h"
 
 namespace fathom::runtime {
@@ -26,20 +27,36 @@ void set_rows(std::span<const Hit> hits, SurfaceRows& rows) {
   }
 }
 
+float least_offset(const Field& field, float size) {
+  return kDistanceError * (kOffsetErrors * size + kMagnitudeErrors * field.cancellation);
+}
+
 // Replaces the surfaces at hits whose coordinates are so coarse that float gives a coarse normal, perhaps of another
 // surface.
 void evaluate_coarse_hits(const Field& field, std::span<const Hit> hits, SurfaceRows& rows,
                           std::span<std::uint32_t> surface, vm::Workspace& workspace) {
   const float most = kMaxOffset * field.band;
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    const float least = kDistanceError * (kOffsetErrors * rows.size[i] + kMagnitudeErrors * field.cancellation);
-    if (!(least > most)) [[likely]]
+    if (!(least_offset(field, rows.size[i]) > most)) [[likely]]
       continue;
     const vm::SurfaceValue exact = field.regions ? field.regions->evaluate_surface(hits[i].position, workspace)
                                                  : vm::evaluate_surface(*field.surface, hits[i].position, workspace);
     for (int axis = 0; axis < 3; ++axis) rows.gradient[axis][i] = static_cast<float>(exact.gradient[axis]);
     surface[i] = exact.surface;
     rows.convex[i] = 0;
+  }
+}
+
+// Replaces the gradients of hits at which the field jumps by the normals of the surface.
+void mend_jumps(const Field& field, std::span<const Hit> hits, SurfaceRows& rows, RealScratch& scratch) {
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const glm::dvec3 gradient(rows.gradient[0][i], rows.gradient[1][i], rows.gradient[2][i]);
+    const float offset = std::max(2 * rows.width[i], least_offset(field, rows.size[i]));
+    const auto normal = jump_normal(
+        field, {hits[i].position, glm::dvec3(hits[i].wo), gradient, static_cast<double>(offset)}, scratch);
+    for (int axis = 0; normal && axis < 3; ++axis) {
+      rows.gradient[axis][i] = static_cast<float>((*normal)[axis]) * rows.side[i];
+    }
   }
 }
 
@@ -61,6 +78,10 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     vm::evaluate_surface(*field.surface, places, hits.size(), values, workspace);
   }
   evaluate_coarse_hits(field, hits, rows, surface, workspace);
+  if (field.cells) {
+    RealScratch scratch;
+    mend_jumps(field, hits, rows, scratch);
+  }
   set_surface_geometry(field, hits.size(), rows);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CHECK(surface[i] < scene.surfaces.size(), "a tag of the surface program has no surface");

@@ -53,7 +53,7 @@ HWY_INLINE Floats clear_distance(Floats convex, Floats size, Floats offset, cons
 
 void set_geometry(const Field& field, std::size_t count, SurfaceRows& rows) {
   const Floats most = number(kMaxOffset * field.band);
-  const FloatMask may_be_clear = number(field.far_levels.used() ? 0 : 1) > number(0);
+  const FloatMask may_be_clear = number(field.far_levels.used() || field.cells ? 0 : 1) > number(0);
   for (std::size_t i = 0; i < count; i += vm::HWY_NAMESPACE::kLanes) {
     const Floats side = Floats::load(rows.side + i), size = Floats::load(rows.size + i);
     const FacingNormal found = facing_normal(load(rows.gradient, i), load(rows.wo, i), side);

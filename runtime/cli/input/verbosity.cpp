@@ -41,7 +41,10 @@ std::string describe_settings(const compiler::CompiledScene& scene, const runtim
   text += settings.far ? fmt::format("rays end after {:.6g}\n", *settings.far) : "";
   const compiler::Box bound = scene.bound.moved(scene.origin);
   text += fmt::format("bound {} to {}, Lipschitz constant {:.6g} ({})\n", triple(bound.lo), triple(bound.hi),
-                      scene.lipschitz, scene.certified ? "proved" : "an estimate");
+                      scene.lipschitz,
+                      scene.certified             ? "proved"
+                      : scene.formula_box.empty() ? "an estimate"
+                                                  : "proved in cells");
   if (scene.origin != glm::dvec3(0)) text += fmt::format("the programs' origin is {}\n", triple(scene.origin));
   return text;
 }

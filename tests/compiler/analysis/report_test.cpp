@@ -50,9 +50,9 @@ TEST_CASE("the report has a row for each object, by its own field", "[report]") 
   CHECK(report.certified);
   CHECK(report.estimates.empty());
   CHECK(report.objects[0].name == "sphere");
-  CHECK(class_of(report.objects[0].facts) == "exact");
+  CHECK(class_of(report.objects[0].facts, report.in_cells) == "exact");
   CHECK_FALSE(report.objects[0].costliest);
-  CHECK(class_of(report.objects[1].facts) == "bound");
+  CHECK(class_of(report.objects[1].facts, report.in_cells) == "bound");
   // Lipschitz constant of the twist: (kR + sqrt(k^2 R^2 + 4)) / 2 with k = pi/2; R is a thousandth more than sqrt 2.
   const double radius = 1.001 * std::sqrt(2.0), kr = 1.5707963267948966 * radius,
                expected = (kr + std::sqrt(kr * kr + 4)) / 2;
@@ -88,8 +88,8 @@ TEST_CASE("the nodes that are estimates are named, not what is made of them", "[
   REQUIRE(report.estimates.size() == 2);
   CHECK(report.estimates[0].name == "bulb");
   CHECK(report.estimates[1].name == "jump");
-  CHECK(class_of(report.objects[0].facts) == "estimate");
-  CHECK(class_of(report.objects[1].facts) == "exact");
+  CHECK(class_of(report.objects[0].facts, report.in_cells) == "estimate");
+  CHECK(class_of(report.objects[1].facts, report.in_cells) == "exact");
 }
 
 TEST_CASE("one union as the only object is one object", "[report]") {
@@ -135,7 +135,7 @@ TEST_CASE("lints are for check, and a formula without a bound is for everyone", 
   REQUIRE(compiled(hidden, true).diagnostics.all().size() == 2);
   CHECK(compiled(hidden, true).diagnostics.all()[0].code == "W0501");
   CHECK(compiled(hidden, true).diagnostics.all()[1].code == "W0515");
-  const std::string jump = R"_({"type": "expression", "formula": "y - floor(x)"})_";
+  const std::string jump = R"_({"type": "expression", "formula": "y - floor(4000*x)"})_";
   CHECK(compiled(jump).diagnostics.all().back().code == "W0509");
 }
 

@@ -220,7 +220,7 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   Bytes other = good;
   other[8] = 3;
   CHECK_THAT(reason_of(other),
-             Contains("it is of version 3 of the format with 4 sections; this program reads version 4"));
+             Contains("it is of version 3 of the format with 4 sections; this program reads version 5"));
   CHECK_THAT(reason_of({good.begin(), good.begin() + 10}), Contains("header is damaged or cut off"));
   CHECK_THAT(reason_of(sealed(parts, vm::Digest{1, 2})), Contains("another machine"));
   CHECK_THAT(with([](Sections& s) { s.code.push_back(0); }), Contains("goes on for 1 bytes after its last program"));
@@ -289,7 +289,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
     CHECK_FALSE(compiler::read_listing(source, diagnostics, contents));
     return diagnostics.print(source, compiler::ErrorFormat::Short);
   };
-  CHECK_THAT(refused("fathom 4", "fathom 5"), Contains("test.txt:1:8: error: `4` should be here"));
+  CHECK_THAT(refused("fathom 5", "fathom 6"), Contains("test.txt:1:8: error: `5` should be here"));
   CHECK_THAT(refused("\"fov\"", "\"fvo\""),
              Contains("test.txt:3:1: error: the tables: /camera: `fov` should be here"));
   CHECK_THAT(refused("\"blades\": 6", "\"blades\": 99"), Contains("/camera/blades: 99 is not in 0..32"));

@@ -60,12 +60,17 @@ TEST_CASE("cli: check names the operation that has no bound, and its line") {
   folder.write("jump.vm", "# steps\n_0 var-x\n_1 var-y\n_2 floor _0\n_3 sub _1 _2\n_4 const 0.1\n_5 add _3 _4\n");
   const Result list = folder.run("check jump.vm");
   CHECK_THAT(list.out, Contains("\n  no bound on the slope of `_2 floor _0` at jump.vm:4:1\n"));
-  CHECK_THAT(list.err, Contains("--> jump.vm:4:1"));
+  CHECK_THAT(list.out, Contains("certified: every step length is proved, cell by cell within the expression"));
+  folder.write("dense.vm", "_0 var-x\n_1 var-y\n_2 const 4000\n_3 mul _0 _2\n_4 floor _3\n_5 sub _1 _4\n");
+  const Result dense = folder.run("check dense.vm");
+  CHECK_THAT(dense.out, Contains("not certified: nothing is proved of the expression"));
+  CHECK_THAT(dense.err, Contains("--> dense.vm:5:1"));
   folder.write("jump.json", R"_({"version": 1, "objects": [
     {"type": "displacement", "of": {"type": "sphere", "radius": 2}, "formula": "0.1*sin(x) + 0.1*sqrt(y)"}]})_");
-  CHECK_THAT(folder.run("check jump.json").out,
-             Contains("not certified: nothing is proved of the displacement at jump.json:2:5\n"
-                      "  no bound on the slope of `sqrt(y)` at jump.json:2:98\n"));
+  CHECK_THAT(
+      folder.run("check jump.json").out,
+      Contains("certified: every step length is proved, cell by cell within the displacement at jump.json:2:5\n"
+               "  no bound on the slope of `sqrt(y)` at jump.json:2:98\n"));
   const auto scene = json_lines(folder.run("check jump.json --error-format json").out).back();
   CHECK(scene["estimates"][0]["operation"] == nlohmann::json({{"text", "sqrt(y)"}, {"line", 2}, {"column", 98}}));
 }

@@ -36,6 +36,27 @@ TEST_CASE("certify: the end of the segment counts", "[march]") {
   CHECK(certify(field, {0, 0, 5}, {0, 0, -1}, 1, {0, 4.001, 0}, scratch).status == Status::Hit);
 }
 
+// Regression: the end of the segment lay where the root of a negative number has no value, and the ray was invalid.
+TEST_CASE("certify: a surface before a place without a value is found", "[march]") {
+  const auto scene =
+      scene_of(R"_("objects": [{"type": "expression", "formula": "y - sqrt(x)", "half_size": [2, 2, 2]}])_");
+  const Field field = make_field(scene);
+  RealScratch scratch;
+  for (const double drop : {0.25, 0.5, 1.4, 2.0}) {
+    CAPTURE(drop);
+    // From (1, 1.5) down into x < 0, where y is 1.5 - drop at x = 0.
+    const glm::dvec3 from(1, 1.5, 0.3), direction = glm::normalize(glm::dvec3(-1, -drop, 0));
+    const CertifiedResult found = certify(field, from, direction, 1, {0, 1.7, 0}, scratch);
+    const glm::dvec3 hit = from + found.t * direction;
+    if (drop > 1.25) {
+      CHECK(found.status == Status::Hit);
+      CHECK(hit.y == Approx(std::sqrt(hit.x)).epsilon(1e-8));
+    } else {
+      CHECK(found.status == Status::Invalid);  // comes to x = 0 above the curve
+    }
+  }
+}
+
 TEST_CASE("certify: a touch without a crossing is a contact", "[march]") {
   const auto box = scene_of(R"("objects": [{"type": "box", "half_size": [1, 1, 1]}])");
   const auto ball = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");

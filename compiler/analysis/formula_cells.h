@@ -1,0 +1,29 @@
+// Formulas whose slope has no bound all over their box, but has one in most cells of the box: a formula that jumps,
+// or that has an infinite slope somewhere. The renderer bounds the slope cell by cell (runtime/field/slope_cells.h),
+// and decides by interval arithmetic where a cell has no bound. Tested by:
+// tests/compiler/analysis/formula_cells_test.cpp
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "compiler/geometry/box.h"
+#include "compiler/graph/graph.h"
+#include "compiler/graph/node_facts.h"
+
+namespace fathom::compiler {
+
+struct FormulaCells {
+  Box box;                // around the parts of the field that contain such formulas; finite
+  double rest_lipschitz;  // Lipschitz constant of the rest of the field; 0 if there is no rest
+};
+
+// Returns the cells of a field whose Lipschitz constant is not proved. Returns nothing if a part without a proof is
+// anything except such a formula, if the field is not a union of bounded parts with formulas and of the rest, or if
+// it has more than kMaxCellNodes nodes: every interval along a ray evaluates all of them. `known` is the result of
+// analyse() (compiler/shapes/bounds.h).
+inline constexpr std::size_t kMaxCellNodes = 1000;
+std::optional<FormulaCells> formula_cells(const Graph& graph, NodeId root, const std::vector<NodeFacts>& known);
+
+}  // namespace fathom::compiler

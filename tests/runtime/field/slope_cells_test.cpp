@@ -1,0 +1,82 @@
+#include "runtime/field/slope_cells.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/field/field.h"
+#include "tests/runtime/rays.h"
+#include "tests/runtime/scenes.h"
+#include "tests/support/scaled_cases.h"
+
+namespace fathom::runtime::slope_cells_test {
+namespace {
+
+const std::string kWave = R"({"type": "expression", "formula": "FORMULA", "half_size": [2, 1.5, 1],
+    "rotate": [10, 20, 30]})";
+const std::string kGround = R"(, {"type": "plane", "normal": [0, 1, 0], "offset": -1})";
+
+compiler::CompiledScene scene_with(const std::string& formula, bool ground) {
+  std::string object = kWave;
+  object.replace(object.find("FORMULA"), 7, formula);
+  return scene_of("\"objects\": [" + object + (ground ? kGround : "") + "]");
+}
+
+TEST_CASE("slope cells: a ball of a point's radius holds no zero", "[runtime]") {
+  Random random(3);
+  for (const std::string formula : {"y - 0.4 * floor(3 * x + z)", "y - 0.3 * tan(1.3 * x)", "sqrt(abs(x)) - 0.4"}) {
+    for (const bool ground : {false, true}) {
+      CAPTURE(formula, ground);
+      const auto scene = scene_with(formula, ground);
+      const Field field = make_field(scene);
+      REQUIRE(field.cells);
+      RealScratch scratch;
+      std::uint64_t instructions = 0;
+      int wrong = 0, moved = 0;
+      for (int i = 0; i < test::scaled_cases(4000); ++i) {
+        const glm::dvec3 point = to_float({random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)});
+        const double value = field.evaluate(point, scratch, instructions), radius = field.to_step(value, point);
+        wrong += (radius < 0) != (value < 0) && radius != 0;
+        moved += std::abs(radius) > 0.01;
+        for (int k = 0; k < 8; ++k) {
+          const glm::dvec3 other = point + std::abs(radius) * random.uniform(0, 1) * random.direction();
+          wrong += (field.evaluate(other, scratch, instructions) < 0) != (value < 0);
+        }
+      }
+      CHECK(wrong == 0);
+      CHECK(moved > test::scaled_cases(4000) / 2);
+    }
+  }
+}
+
+TEST_CASE("slope cells: the radius of one point is that of many", "[runtime]") {
+  const auto scene = scene_with("y - 0.4 * floor(3 * x + z)", true);
+  const Field field = make_field(scene);
+  Random random(4);
+  std::vector<float> x(80), y(80), z(80), radii(80), values(80);
+  for (std::size_t i = 0; i < 64; ++i) {
+    x[i] = static_cast<float>(random.uniform(-3, 3));
+    y[i] = static_cast<float>(random.uniform(-3, 3));
+    z[i] = static_cast<float>(random.uniform(-3, 3));
+    radii[i] = values[i] = static_cast<float>(random.uniform(-1, 1));
+  }
+  values[7] = radii[7] = NAN;
+  values[9] = radii[9] = INFINITY;
+  field.to_steps({x.data(), y.data(), z.data()}, 61, radii.data());
+  CHECK(std::isnan(radii[7]));
+  CHECK(std::isfinite(radii[9]));
+  for (std::size_t i = 0; i < 61; ++i) {
+    if (i != 7)
+      CHECK(static_cast<double>(radii[i]) == field.to_step(static_cast<double>(values[i]), {x[i], y[i], z[i]}));
+  }
+}
+
+TEST_CASE("slope cells: they take little memory", "[runtime]") {
+  const Field field = make_field(scene_with("y - 0.4 * floor(3 * x + z)", true));
+  CHECK(field.cells->bytes() < 2u << 20);
+}
+
+}  // namespace
+}  // namespace fathom::runtime::slope_cells_test
