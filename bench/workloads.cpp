@@ -25,9 +25,9 @@ struct Row {
 };
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr Row kRows[] = {{"A", 1, 0.8, 5},
-                         {"B", 1, 0.8, 5},
-                         {"C", 1, 0.8, 3},
-                         {"E", 1, 0.8, 5},
+                         {"B", 1, 1, 5},
+                         {"C", 1, 1, 3},
+                         {"E", 1, 1, 5},
                          {"D1000", 0.1, 0.1, 3, 2},
                          {"D10000", 1 / 60.0, 1 / 60.0, 1, 1},
                          {"D100000", kNone, kNone, 1, 1, 8}};

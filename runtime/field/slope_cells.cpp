@@ -144,22 +144,18 @@ float typical_cancellation(std::vector<float> errors) {
 
 SlopeCells::SlopeCells(const vm::VerifiedProgram& program, const compiler::Box& formulas, double rest_lipschitz) {
   const glm::dvec3 rim = (formulas.hi - formulas.lo) * kRim;
-  const compiler::Box box{formulas.lo - rim, formulas.hi + rim};
-  grid_.lo = to_floats(box.lo);
-  grid_.hi = to_floats(box.hi);
+  grid_.lo = to_floats(formulas.lo - rim);
+  grid_.hi = to_floats(formulas.hi + rim);
+  const compiler::Box box{{grid_.lo[0], grid_.lo[1], grid_.lo[2]}, {grid_.hi[0], grid_.hi[1], grid_.hi[2]}};
   grid_.formula_lo = to_floats(formulas.lo);
   grid_.formula_hi = to_floats(formulas.hi);
   for (std::size_t a = 0; a < 3; ++a) grid_.extent[a] = grid_.hi[a] - grid_.lo[a];
-  // The box that is bounded contains the grid in float.
   std::vector<SlopeLevel> levels = build_slope_levels(program, box, SlopeGrid::kLevels);
   cancellation_ = typical_cancellation(levels.back().errors);
   const float rest = static_cast<float>(rest_lipschitz);
   grid_.inverse_rest = rest > 0 ? 1 / rest : kFarAway;
   grid_.levels = static_cast<int>(levels.size());
   const float most = static_cast<float>(vm::kFloatError) * (1 + cancellation_);
-  std::size_t bounded = 0;
-  for (const float slope : levels.back().slopes) bounded += std::isfinite(slope);
-  bounded_share_ = static_cast<double>(bounded) / static_cast<double>(levels.back().slopes.size());
   for (std::size_t level = 0; level < levels.size(); ++level) {
     std::vector<float>& slopes = levels[level].slopes;
     // A slope so small that the radius would have a larger error counts as greater.

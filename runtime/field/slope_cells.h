@@ -61,14 +61,11 @@ class SlopeCells {
   // the finest cells, scene units.
   double stretch() const { return stretch_; }
   std::size_t bytes() const;
-  // Share of the grid's finest cells that have a bound.
-  double bounded_share() const { return bounded_share_; }
 
  private:
   SlopeGrid grid_;
   float cancellation_ = 0;
   double stretch_ = 0;
-  double bounded_share_ = 0;
 };
 
 }  // namespace fathom::runtime
