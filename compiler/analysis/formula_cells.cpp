@@ -4,22 +4,10 @@
 #include <span>
 
 #include "compiler/derive/formula_field.h"
+#include "compiler/graph/rewrite.h"
 
 namespace fathom::compiler {
 namespace {
-
-// Returns the number of nodes that the root reaches.
-std::size_t count_reached(const Graph& graph, NodeId root) {
-  std::vector<bool> reached(root + 1, false);
-  reached[root] = true;
-  std::size_t count = 0;
-  for (NodeId id = root + 1; id-- > 0;) {
-    if (!reached[id]) continue;
-    ++count;
-    for (const NodeId child : graph.children(id)) reached[child] = true;
-  }
-  return count;
-}
 
 // True if every node below `root` whose constant is not proved owes this to formulas that have bounds in cells.
 bool has_bounds_in_cells(const Graph& graph, NodeId root, const std::vector<NodeFacts>& known) {
@@ -42,7 +30,7 @@ bool has_bounds_in_cells(const Graph& graph, NodeId root, const std::vector<Node
 
 std::optional<FormulaCells> formula_cells(const Graph& graph, NodeId root, const std::vector<NodeFacts>& known) {
   if (known[root].certified || !has_bounds_in_cells(graph, root, known)) return std::nullopt;
-  if (count_reached(graph, root) > kMaxCellNodes) return std::nullopt;
+  if (std::ranges::count(reachable(graph, root), true) > kMaxCellNodes) return std::nullopt;
   FormulaCells cells{{}, 0};
   std::vector<NodeId> parts = {root};
   while (!parts.empty()) {

@@ -19,11 +19,12 @@ struct FormulaCells {
   double rest_lipschitz;  // Lipschitz constant of the rest of the field; 0 if there is no rest
 };
 
+inline constexpr std::ptrdiff_t kMaxCellNodes = 1000;
+
 // Returns the cells of a field whose Lipschitz constant is not proved. Returns nothing if a part without a proof is
 // anything except such a formula, if the field is not a union of bounded parts with formulas and of the rest, or if
 // it has more than kMaxCellNodes nodes: every interval along a ray evaluates all of them. `known` is the result of
 // analyse() (compiler/shapes/bounds.h).
-inline constexpr std::size_t kMaxCellNodes = 1000;
 std::optional<FormulaCells> formula_cells(const Graph& graph, NodeId root, const std::vector<NodeFacts>& known);
 
 }  // namespace fathom::compiler

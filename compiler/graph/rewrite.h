@@ -8,15 +8,16 @@
 namespace fathom::compiler {
 
 // [node] True if the root reaches the node.
-inline std::vector<bool> reachable(const Scene& scene) {
-  std::vector<bool> reached(scene.graph.size(), false);
-  reached[scene.root] = true;
-  for (NodeId id = scene.root + 1; id-- > 0;) {  // parents come after their children
+inline std::vector<bool> reachable(const Graph& graph, NodeId root) {
+  std::vector<bool> reached(graph.size(), false);
+  reached[root] = true;
+  for (NodeId id = root + 1; id-- > 0;) {  // parents come after their children
     if (!reached[id]) continue;
-    for (NodeId child : scene.graph.children(id)) reached[child] = true;
+    for (NodeId child : graph.children(id)) reached[child] = true;
   }
   return reached;
 }
+inline std::vector<bool> reachable(const Scene& scene) { return reachable(scene.graph, scene.root); }
 
 // make(out, id, children) returns the node of `out` that replaces node `id` of `in`. `children` are the rebuilt
 // children of `id`.

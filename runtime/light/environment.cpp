@@ -142,17 +142,19 @@ glm::vec3 Environment::radiance(glm::vec3 direction) const {
   return sum;
 }
 
-// Apart for a gradient, whose colour takes less time than a call.
-void Environment::set_radiance(std::size_t count, BackgroundRows& rows) const {
-  const bool plain = type_ == Type::Gradient && discs_.empty();
-  for (int channel = 0; plain && channel < 3; ++channel) {
+void Environment::set_gradient(std::size_t count, BackgroundRows& rows) const {
+  for (int channel = 0; channel < 3; ++channel) {
     const double bottom = bottom_[channel], top = top_[channel];
     for (std::size_t i = 0; i < count; ++i) {
       const double share = gradient_share(rows.direction[1][i]);
       rows.radiance[channel][i] = static_cast<float>(bottom * (1 - share) + top * share);
     }
   }
-  if (plain) return;
+}
+
+void Environment::set_radiance(std::size_t count, BackgroundRows& rows) const {
+  // The colour of a gradient takes less time than a call.
+  if (type_ == Type::Gradient && discs_.empty()) return set_gradient(count, rows);
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3 found = radiance({rows.direction[0][i], rows.direction[1][i], rows.direction[2][i]});
     for (int channel = 0; channel < 3; ++channel) rows.radiance[channel][i] = found[channel];

@@ -58,6 +58,7 @@ class Environment {
 
   void add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance);
   glm::vec3 backdrop(glm::vec3 direction) const;  // without discs
+  void set_gradient(std::size_t count, BackgroundRows& rows) const;
   glm::vec3 pixel(glm::vec3 direction) const;
   float mean() const;  // luminance of the backdrop if it is sampled, otherwise 0
   float importance(const Disc& disc, const LightSampleContext& context) const;

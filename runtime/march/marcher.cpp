@@ -39,12 +39,9 @@ void Marcher::begin_waiting() {
 
 void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                            std::uint64_t instructions) {
-  RayInterval searched = interval;
-  if (field_.cells && resumes_)
-    searched.end = std::min(interval.end, std::max(interval.begin, interval.hint) + field_.cells->stretch());
-  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, searched),
+  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, interval),
                        ray,
-                       searched.end,
+                       interval.end,
                        {evaluations, 0, instructions}});
 }
 
@@ -80,7 +77,7 @@ void Marcher::evaluate_searches() {
 void Marcher::end_search(std::size_t i) {
   const SearchedRay& searched = searched_[i];
   const CertifiedResult& found = searched.search.result();
-  ++counters_.certified;
+  counters_.certified += !resumed_.contains(searched.ray.id);  // counts rays, some of which are searched again
   counters_.certified_evaluations += found.evaluations;
   counters_.evaluations += found.evaluations;
   if (!resume(searched)) {
@@ -103,7 +100,6 @@ bool Marcher::resume(const SearchedRay& searched) {
   work.evaluations += searched.work.evaluations + found.evaluations;
   work.certified += found.evaluations;
   work.instructions += searched.work.instructions + found.instructions;
-  counters_.instructions += searched.work.instructions + found.instructions;
   waiting_.push_from(ray.id, ray.origin - ray.entry * ray.direction, ray.direction, ray.entry + searched.end,
                      ray.entry + ray.length, found.side);
   return true;

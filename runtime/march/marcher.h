@@ -64,8 +64,6 @@ class Marcher {
     std::uint32_t id;
   };
 
-  // True if a ray may go on by step() after a search.
-  void resume_after_search() { resumes_ = true; }
   // Starts clipped rays of `rays`, from the last on, as long as there is room, and removes them from the block. live_
   // counts the rays under way.
   virtual void begin(RayBlock& rays) = 0;
@@ -99,7 +97,8 @@ class Marcher {
       add_work(ray_hits_.back());
     counters_.instructions += ray_hits_.back().instructions;
   }
-  // Hands a ray that is no longer live to the search in double, after `evaluations` in float.
+  // Hands a ray that is no longer live to the search in double, after `evaluations` in float. If the interval ends
+  // before the ray and has no hit, the ray goes on in float from there.
   void certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
                     std::uint64_t instructions);
 
@@ -145,7 +144,6 @@ class Marcher {
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
   std::size_t max_waiting_;         // capacity_, less the rays that are live or searched
-  bool resumes_ = false;
   const std::size_t min_batch_;     // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
   std::unordered_map<std::uint32_t, Work> resumed_;  // [id] work on rays that went on in float after a search

@@ -51,9 +51,7 @@ Stream<S>::Stream(const Field& field, const Marching& marching)
       takes_slope_hint_(!uses_epsilon_),
       max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
       use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
-      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {
-  resume_after_search();
-}
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
@@ -169,14 +167,20 @@ void Stream<S>::finish(std::size_t i) {
 }
 
 // Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins
-// with the bracket, widened by the uncertainty.
+// with the bracket, widened by the uncertainty. The interval ends before the ray in a field with cells: further on,
+// float may know more.
 template <class S>
 RayInterval Stream<S>::undecided_interval(std::size_t i) const {
   const auto number = [&](auto row) { return static_cast<double>(lanes_->row[row][i]); };
-  const double length = clipped_rays_[i].length;
-  if (number(kPhase) != static_cast<double>(LanePhase::Refine)) return {number(kT), length, 0};
-  const double slack = std::max(kBracketMargin * number(kTHi), static_cast<double>(field_.band));
-  return {std::max(0.0, number(kTLo) - slack), length, number(kTHi) + slack};
+  RayInterval interval{number(kT), clipped_rays_[i].length, 0};
+  if (number(kPhase) == static_cast<double>(LanePhase::Refine)) {
+    const double slack = std::max(kBracketMargin * number(kTHi), static_cast<double>(field_.band));
+    interval.begin = std::max(0.0, number(kTLo) - slack);
+    interval.hint = number(kTHi) + slack;
+  }
+  if (field_.cells)
+    interval.end = std::min(interval.end, std::max(interval.begin, interval.hint) + field_.cells->stretch());
+  return interval;
 }
 
 template class Stream<float>;
