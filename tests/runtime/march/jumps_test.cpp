@@ -131,6 +131,10 @@ Counts count(const Formula& formula, glm::dvec3 turn, int rays_wanted) {
     if (Truth{formula, to_local, ray}(0) > 0) rays.push_back(ray);
   }
   const MarchResult result = march(field, rays);
+  std::uint64_t instructions = 0;
+  for (const RayHit& ray_hit : result.ray_hits) instructions += ray_hit.instructions;
+  CHECK(instructions == result.counters.instructions);
+  CHECK(result.counters.certified <= rays.size());
   Counts counts;
   for (std::size_t i = 0; i < rays.size(); ++i) judge(result.ray_hits[i], {formula, to_local, rays[i]}, counts);
   return counts;
