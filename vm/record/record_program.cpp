@@ -1,0 +1,75 @@
+#include "vm/record/record_program.h"
+
+#include "vm/interpret/interpret-inl.h"
+#include "vm/number/convexity-inl.h"
+#include "vm/number/dual-inl.h"
+#include "vm/number/tagged-inl.h"
+#include "vm/record/recorded-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fathom::vm::HWY_NAMESPACE {
+namespace {
+
+using RecordedFloat = Recorded<Batch>;
+
+void set_point(Vec3<RecordedFloat>& p, const RecordedFloat& x, const RecordedFloat& y, const RecordedFloat& z) {
+  p = {x, y, z};
+}
+void set_point(Vec3<Dual<RecordedFloat>>& p, const RecordedFloat& x, const RecordedFloat& y, const RecordedFloat& z) {
+  const RecordedFloat zero = RecordedFloat::broadcast(0.0), one = RecordedFloat::broadcast(1.0);
+  p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
+}
+
+using RecordedSurface = Tagged<Convex<Dual<RecordedFloat>>>;
+
+std::vector<Ref> refs(const RecordedFloat& distance) { return {distance.ref}; }
+std::vector<Ref> refs(const Convex<RecordedFloat>& value) { return {value.v.ref, value.convex.ref}; }
+std::vector<Ref> refs(const RecordedSurface& value) {
+  const Dual<RecordedFloat>& distance = value.v.v;
+  return {distance.v.ref,
+          zero_unless_finite(distance.dx).ref,
+          zero_unless_finite(distance.dy).ref,
+          zero_unless_finite(distance.dz).ref,
+          value.v.convex.ref,
+          value.surface.ref};
+}
+
+template <class T>
+std::vector<Ref> run_program(const Code& program) {
+  Workspace workspace;
+  Interpreter<T> machine(program, workspace, 1);
+  set_point(*machine.first_point(), RecordedFloat::parameter(0), RecordedFloat::parameter(1),
+            RecordedFloat::parameter(2));
+  machine.interpret();
+  return refs(*machine.result());
+}
+
+}  // namespace
+
+RecordedFunction record_function(const Code& program, RecordedResults results) {
+  RecordedFunction function;
+  const Recording recording(function);
+  switch (results) {
+    case RecordedResults::Distance:
+      function.results = run_program<RecordedFloat>(program);
+      break;
+    case RecordedResults::DistanceAndConvexity:
+      function.results = run_program<Convex<RecordedFloat>>(program);
+      break;
+    case RecordedResults::Surface:
+      function.results = run_program<RecordedSurface>(program);
+      break;
+  }
+  return function;
+}
+
+}  // namespace fathom::vm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+namespace fathom::vm {
+
+RecordedFunction record_program(const Code& program, RecordedResults results) {
+  return HWY_NAMESPACE::record_function(program, results);
+}
+
+}  // namespace fathom::vm
