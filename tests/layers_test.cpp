@@ -25,6 +25,7 @@ const std::vector<std::string> kFolders = {
     "vm/range",
     "vm/prune",
     "vm/record",
+    "vm/native",
     "compiler/source",
     "compiler/geometry",
     "compiler/graph",
