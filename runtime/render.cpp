@@ -113,6 +113,11 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
     context.media.add_regions(scene, regions, store);
   }
+  if (settings.native_code) {
+    const double evaluations = region_options(settings).evaluations;
+    add_native_code(context.field, evaluations);
+    context.media.add_native_code(evaluations);
+  }
   RealScratch scratch;
   const glm::dvec3 eye = context.camera.position();
   if (is_uniform_around(eye, context.camera.spread(context.filter.radius()), context.field, context.media, scratch)) {

@@ -159,6 +159,22 @@ void add_regions(Field& field, const compiler::CompiledField& compiled, const Re
   if (field.regions) become_large(field, field.regions->far_levels());
 }
 
+void add_native_code(Field& field, double evaluations) {
+  // Compilation takes about a microsecond per operation, and a point about a nanosecond per twenty operations.
+  constexpr double kMinEvaluations = 1e5;
+  if (field.regions || evaluations < kMinEvaluations) return;
+  using vm::RecordedResults;
+  const auto compile = [](const vm::VerifiedProgram& program, RecordedResults results) {
+    return vm::NativeProgram::compile(program, results);
+  };
+  if (field.has_convexity()) {
+    field.native.convex = compile(*field.distance, RecordedResults::DistanceAndConvexity);
+  } else {
+    field.native.distance = compile(*field.distance, RecordedResults::Distance);
+  }
+  field.native.surface = compile(*field.surface, RecordedResults::Surface);
+}
+
 double Field::rounded(double value, glm::dvec3 point) const {
   if (!far_levels.used()) return value;
   const glm::vec3 p(point);
@@ -169,8 +185,25 @@ void Field::evaluate(vm::Points points, std::size_t count, float* out, RegionScr
                      vm::Workspace& workspace) const {
   if (evaluator) return evaluator(points, count, out);
   if (regions) return regions->evaluate(points, count, out, scratch, workspace);
-  vm::evaluate_distance(*distance, points, count, out, workspace);
+  if (native.distance) {
+    native.distance->evaluate(points, count, out);
+  } else {
+    vm::evaluate_distance(*distance, points, count, out, workspace);
+  }
   far_levels.apply(points, count, out);
+}
+
+void Field::evaluate_convex(vm::Points points, std::size_t count, float* out, float* convex_radius,
+                            vm::Workspace& workspace) const {
+  if (native.convex) return native.convex->evaluate(points, count, out, convex_radius);
+  vm::evaluate_convex(*distance, points, count, out, convex_radius, workspace);
+}
+
+void Field::evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out,
+                             vm::Workspace& workspace) const {
+  if (regions) return regions->evaluate_surface(points, count, out, workspace);
+  if (native.surface) return native.surface->evaluate_surface(points, count, out);
+  vm::evaluate_surface(*surface, points, count, out, workspace);
 }
 
 double Field::evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const {

@@ -11,6 +11,7 @@
 #include "runtime/field/far_levels.h"
 #include "runtime/field/regions.h"
 #include "runtime/field/slope_cells.h"
+#include "vm/native/native_program.h"
 #include "vm/program/opcode.h"
 
 namespace fathom::runtime {
@@ -42,6 +43,11 @@ struct Field {
   // made mostly of convex shapes. False for large scenes.
   bool convex;
 
+  // Machine code of the programs, or null: then the interpreter evaluates, with the same bits (add_native_code()).
+  struct {
+    std::shared_ptr<const vm::NativeProgram> distance, convex, surface;
+  } native;
+
   // Alternative to the machine for float distances, or null: benches compare the machine with other evaluators of the
   // same scene. The function may read and write past `count` up to a whole register.
   void (*evaluator)(vm::Points points, std::size_t count, float* out);
@@ -69,6 +75,10 @@ struct Field {
   // double, the number is added to `instructions`, or written there per point.
   void evaluate(vm::Points points, std::size_t count, float* out, RegionScratch& scratch,
                 vm::Workspace& workspace) const;
+  // Evaluates distances and convexity radii; has_convexity() is true.
+  void evaluate_convex(vm::Points points, std::size_t count, float* distance, float* convex_radius,
+                       vm::Workspace& workspace) const;
+  void evaluate_surface(vm::Points points, std::size_t count, vm::SurfaceValues out, vm::Workspace& workspace) const;
   double evaluate(glm::dvec3 point, RealScratch& scratch, std::uint64_t& instructions) const;
   void evaluate(vm::RealPoints points, std::size_t count, double* out, std::uint64_t* instructions,
                 RealScratch& scratch) const;
@@ -91,6 +101,10 @@ Field make_field(const compiler::CompiledField& compiled, double extent, std::op
 // Returns the size of the subject, scene units: the distance to the camera's target, but no more than half the
 // bound's diagonal. A wide floor must not coarsen the things that stand on it.
 double extent_of(const compiler::CompiledScene& scene);
+
+// Compiles the programs that a field without regions evaluates to machine code, if `evaluations` repay it. Changes no
+// bit of any result.
+void add_native_code(Field& field, double evaluations);
 
 inline constexpr double kDefaultFar = 1e4;  // scene units
 

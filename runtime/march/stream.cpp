@@ -94,7 +94,7 @@ void Stream<float>::evaluate() {
   const auto count = static_cast<std::size_t>(live_);
   const vm::Points points{row[kX], row[kY], row[kZ]};
   if (use_convexity_) {
-    return vm::evaluate_convex(*field_.distance, points, count, distance_.data(), convex_.data(), workspace_);
+    return field_.evaluate_convex(points, count, distance_.data(), convex_.data(), workspace_);
   }
   field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   field_.to_steps(points, count, distance_.data());

@@ -18,6 +18,10 @@ void Media::add_regions(const compiler::CompiledScene& scene, RegionOptions opti
   }
 }
 
+void Media::add_native_code(double evaluations) {
+  for (Medium& medium : media_) runtime::add_native_code(medium.field, evaluations);
+}
+
 std::optional<std::uint32_t> Media::at(glm::dvec3 place, RealScratch& scratch) const {
   std::uint64_t instructions = 0;
   for (std::uint32_t i = 0; i < media_.size(); ++i) {

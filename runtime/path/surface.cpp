@@ -72,11 +72,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   const vm::Points places{rows.position[0], rows.position[1], rows.position[2]};
   const vm::SurfaceValues values{distance.data(),  rows.gradient[0], rows.gradient[1],
                                  rows.gradient[2], surface.data(),   rows.convex};
-  if (field.regions) {
-    field.regions->evaluate_surface(places, hits.size(), values, workspace);
-  } else {
-    vm::evaluate_surface(*field.surface, places, hits.size(), values, workspace);
-  }
+  field.evaluate_surface(places, hits.size(), values, workspace);
   evaluate_coarse_hits(field, hits, rows, surface, workspace);
   if (field.cells) {
     RealScratch scratch;

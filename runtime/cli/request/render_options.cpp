@@ -180,6 +180,8 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
                    into(read_positive, request.epsilon));
   arguments.flag("--no-regions", "Build no regions: evaluate the whole program everywhere, however large the scene",
                  request.no_regions);
+  arguments.flag("--no-native", "Interpret programs, do not compile them to machine code; the picture is the same",
+                 request.no_native);
   arguments.option("--region-memory", "MB", "Max memory of regions (64)", whole(request.region_memory, 1, 1 << 20));
   arguments.option("--max-steps", "N", "Max evaluations per ray (512); for sphere, relaxed and automatic",
                    whole(request.steps, 1, 1 << 20));

@@ -134,6 +134,7 @@ void put_flags(RenderRequest& request) {
   }
   if (request.denoise) options.layers.first_hit = options.layers.halves = true;
   options.regions = !request.no_regions;
+  options.native_code = !request.no_native;
   if (request.region_memory) options.region_memory = static_cast<std::size_t>(*request.region_memory) << 20;
 }
 

@@ -37,6 +37,7 @@ struct RenderRequest {
   std::optional<double> epsilon, relaxation;
   std::optional<int> steps;
   bool no_regions = false;
+  bool no_native = false;
   std::optional<int> region_memory;  // MB
   int precision = -1;                // a runtime::Precision; -1: not given
   std::optional<std::string> stats_json, cost_map;
