@@ -12,6 +12,7 @@
 #include "bench/clouds.h"
 #include "bench/comparison.h"
 #include "bench/compiled_scenes.h"
+#include "vm/native/native_program.h"
 
 namespace {
 
@@ -28,7 +29,9 @@ class Scene {
       : scene_(compile_file(ahead.path)),
         cloud_(make_cloud(kPoints, scene_.bound)),
         out_(kPoints),
-        convex_(kPoints) {}
+        convex_(kPoints),
+        native_(vm::NativeProgram::compile(scene_.distance, vm::RecordedResults::Distance)),
+        native_convex_(vm::NativeProgram::compile(scene_.distance, vm::RecordedResults::DistanceAndConvexity)) {}
 
   // Number of repeats per round, so that a round takes a millisecond or more.
   int repeats() const { return std::max(1, 4000 / static_cast<int>(scene_.distance.instructions() + 50)); }
@@ -52,6 +55,13 @@ class Scene {
     }
     vm::force_isa(before);
   }
+  bool has_native() const { return native_ && native_convex_; }
+  void run_native(int repeats) {
+    for (int i = 0; i < repeats; ++i) native_->evaluate(cloud_.points(), kPoints, out_.data());
+  }
+  void run_native_convex(int repeats) {
+    for (int i = 0; i < repeats; ++i) native_convex_->evaluate(cloud_.points(), kPoints, out_.data(), convex_.data());
+  }
   void run(DistanceOf distance, int repeats) {
     for (int i = 0; i < repeats; ++i) distance(cloud_.points(), kPoints, out_.data());
   }
@@ -60,6 +70,7 @@ class Scene {
   compiler::CompiledScene scene_;
   Cloud cloud_;
   std::vector<float> out_, convex_;
+  std::shared_ptr<const vm::NativeProgram> native_, native_convex_;
   vm::Workspace workspace_;
 };
 
@@ -91,9 +102,10 @@ class Function {
 struct Bars {
   const char* scene;
   double ahead, scalar;  // max ratios to the C++ compiled ahead of time and to the scalar interpreter
+  double native;         // max ratio of native code to the C++ compiled ahead of time
 };
-constexpr Bars kBars[] = {{"A", 1.15, 0.1},     {"B", 1.15, 0.1}, {"D1000", 1.15, 0.1},
-                          {"C", 1.25, 1 / 7.0}, {"E", 1.25, 0.1}, {"F", 4, 0.1}};
+constexpr Bars kBars[] = {{"A", 1.15, 0.1, 1.1},          {"B", 1.15, 0.1, 1}, {"D1000", 1.15, 0.1, 1},
+                          {"C", 1.25, 1 / 7.0, INFINITY}, {"E", 1.25, 0.1, 1}, {"F", 4, 0.1, 1.5}};
 
 }  // namespace
 
@@ -115,6 +127,13 @@ int main(int argc, char** argv) {
          interpret, against(fast.distance)});
     add({name + ": telling what is convex / distances alone", "ns a point", nanoseconds, INFINITY, 0, kRounds,
          [&scene, repeats] { scene.interpret_convex(repeats); }, interpret});
+    if (scene.has_native()) {
+      add({name + ": native code / emitted C++", "ns a point", nanoseconds, bars.native, 0, kRounds,
+           [&scene, repeats] { scene.run_native(repeats); }, against(ahead.distance)});
+      add({name + ": native code / machine, telling what is convex", "ns a point", nanoseconds, INFINITY, 0, kRounds,
+           [&scene, repeats] { scene.run_native_convex(repeats); },
+           [&scene, repeats] { scene.interpret_convex(repeats); }});
+    }
     add({name + ": machine / its scalar interpreter", "ns a point", 1e9 / kPoints, bars.scalar, 0, kRounds,
          [&scene] { scene.interpret(1); }, [&scene] { scene.interpret_scalar(); }});
   }
