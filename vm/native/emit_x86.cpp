@@ -26,11 +26,24 @@ constexpr int kMantissaBits = 23;
 constexpr std::uint32_t kExponentBias = 127, kRootHalf = 0x3f3504f3;
 constexpr float kMinNormal = 0x1p-126f, kSubnormalScale = 0x1p24f, kSubnormalShift = 24;
 
+constexpr int kMaxSlots = 4096;  // a quarter of a megabyte of the thread's stack
+
+class FailureFlag : public asmjit::ErrorHandler {
+ public:
+  void handleError(asmjit::Error, const char*, asmjit::BaseEmitter*) override { failed_ = true; }
+  bool failed() const { return failed_; }
+
+ private:
+  bool failed_ = false;
+};
+
 class Emitter {
  public:
   Emitter(const OperationGraph& graph, NativeIsa isa, asmjit::CodeHolder& holder)
       : graph_(graph), wide_(isa == NativeIsa::Avx512), file_(graph, wide_ ? 29 : 13), a_(&holder) {}
 
+  int slots() const { return file_.slots(); }
+  // Emits the code. Returns its constants.
   std::vector<float> run() {
     const auto frame = prologue();
     const asmjit::Label loop = a_.newLabel();
@@ -280,11 +293,15 @@ class Emitter {
 }  // namespace
 
 NativeCode emit_x86(const OperationGraph& graph, NativeIsa isa) {
-  asmjit::Environment environment = asmjit::Environment::host();
+  const asmjit::Environment environment = asmjit::Environment::host();
+  FailureFlag failure;
   asmjit::CodeHolder holder;
   if (holder.init(environment) != asmjit::kErrorOk) return {};
+  holder.setErrorHandler(&failure);
+  Emitter emitter(graph, isa, holder);
   NativeCode code;
-  code.constants = Emitter(graph, isa, holder).run();
+  code.constants = emitter.run();
+  if (failure.failed() || emitter.slots() > kMaxSlots) return {};
   if (holder.flatten() != asmjit::kErrorOk || holder.resolveUnresolvedLinks() != asmjit::kErrorOk) return {};
   const auto& bytes = holder.textSection()->buffer();
   code.bytes.assign(bytes.data(), bytes.data() + bytes.size());

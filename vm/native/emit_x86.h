@@ -25,7 +25,7 @@ struct NativeCode {
   std::vector<float> constants;
 };
 
-// Returns no bytes if the assembler fails.
+// Returns no bytes if the assembler fails or the code needs a large stack frame.
 NativeCode emit_x86(const OperationGraph& graph, NativeIsa isa);
 
 }  // namespace fathom::vm

@@ -10,6 +10,7 @@
 
 #include "vm/native/emit_x86.h"
 #include "vm/native/operation_graph.h"
+#include "vm/program/opcode_rows.h"
 #endif
 
 namespace fathom::vm {
@@ -18,8 +19,19 @@ namespace {
 constexpr std::size_t kMaxLanes = 16;
 
 #ifdef FATHOM_NATIVE
-// Maximum size of a program, operations: about half a megabyte of code, which streams from the second-level cache.
+// Maximum length of a program, multiply-adds and operations: about half a megabyte of code, which streams from the
+// second-level cache. Bounds the memory that an untrusted program takes while it is recorded.
+constexpr std::uint32_t kMaxCost = 1 << 14;
 constexpr std::size_t kMaxOperations = 1 << 15;
+
+// True if an instruction has an integer immediate, its number of iterations.
+bool iterates(const Program& program) {
+  for (std::size_t at = 0; at < program.words.size(); at += 1 + immediates_of(program.words[at])) {
+    if (info(static_cast<Opcode>(program.words[at] & 0xff)).immediate_names.find(':') != std::string_view::npos)
+      return true;
+  }
+  return false;
+}
 #endif
 
 }  // namespace
@@ -33,10 +45,10 @@ std::vector<NativeIsa> NativeProgram::available() {
   return {};
 }
 
-std::shared_ptr<const NativeProgram> NativeProgram::compile(const Code& program, RecordedResults results,
+std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram& program, RecordedResults results,
                                                             NativeIsa isa) {
   namespace memory = asmjit::VirtMem;
-  if (program.size > kMaxOperations) return nullptr;
+  if (program.cost() > kMaxCost || iterates(program.program())) return nullptr;
   const auto graph = make_operation_graph(record_program(program, results), kMaxOperations);
   if (!graph) return nullptr;
   NativeCode code = emit_x86(*graph, isa);
@@ -101,7 +113,7 @@ void NativeProgram::evaluate_surface(Points points, std::size_t count, SurfaceVa
 #else
 
 std::vector<NativeIsa> NativeProgram::available() { return {}; }
-std::shared_ptr<const NativeProgram> NativeProgram::compile(const Code&, RecordedResults, NativeIsa) {
+std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram&, RecordedResults, NativeIsa) {
   return nullptr;
 }
 NativeProgram::~NativeProgram() = default;
@@ -110,7 +122,7 @@ void NativeProgram::evaluate_surface(Points, std::size_t, SurfaceValues) const {
 
 #endif
 
-std::shared_ptr<const NativeProgram> NativeProgram::compile(const Code& program, RecordedResults results) {
+std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram& program, RecordedResults results) {
   const std::vector<NativeIsa> isas = available();
   return isas.empty() ? nullptr : compile(program, results, isas.front());
 }

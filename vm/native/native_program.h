@@ -25,11 +25,12 @@ class NativeProgram {
   // Instruction sets of this computer that have native code; those in use by vm::isa_name() or below.
   static std::vector<NativeIsa> available();
 
-  // Returns null if the program is too long for the instruction cache or has loops, or if the system grants no
-  // executable memory. `isa` is one of available().
-  static std::shared_ptr<const NativeProgram> compile(const Code& program, RecordedResults results, NativeIsa isa);
+  // Returns null if the program is long or has loops, or if the system grants no executable memory. `isa` is one of
+  // available().
+  static std::shared_ptr<const NativeProgram> compile(const VerifiedProgram& program, RecordedResults results,
+                                                      NativeIsa isa);
   // The same for the best available instruction set; null if there is none.
-  static std::shared_ptr<const NativeProgram> compile(const Code& program, RecordedResults results);
+  static std::shared_ptr<const NativeProgram> compile(const VerifiedProgram& program, RecordedResults results);
 
   NativeProgram(const NativeProgram&) = delete;
   NativeProgram& operator=(const NativeProgram&) = delete;
