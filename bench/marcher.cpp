@@ -1,8 +1,8 @@
 // Measures the cost of interpretation per ray. The whole marcher (clipping, steps, brackets, search in double) is
 // compared with the same marcher around the distance function compiled ahead of time (`fathom emit cpp`), on camera
-// rays and on the diffuse rays that leave their hits. Compiled code does not return the convexity radius
-// (vm/number/convexity-inl.h), so neither side uses one. Scenes for which the marcher uses convexity radii have a
-// second row, with the unmodified marcher.
+// rays and on the diffuse rays that leave their hits, and so is the marcher around native code. Compiled code does
+// not return the convexity radius (vm/number/convexity-inl.h), so neither side uses one. Scenes for which the marcher
+// uses convexity radii have a second row, with the unmodified marcher.
 //
 //     build/release/bench_marcher
 #include <glm/geometric.hpp>
@@ -32,8 +32,10 @@ class Scene {
       : scene_(compile_file(ahead.path)),
         field_(runtime::make_field(scene_, scene_.settings.far)),
         plain_(field_),
+        native_(field_),
         ahead_(field_) {
-    plain_.convex = false;
+    plain_.convex = native_.convex = false;
+    runtime::add_native_code(native_, std::numeric_limits<double>::infinity());
     ahead_.evaluator = ahead.distance;
     aim();
     bounce();
@@ -43,6 +45,7 @@ class Scene {
   const std::vector<runtime::Ray>& diffuse_rays() const { return diffuse_; }
   const runtime::Field& as_it_is() const { return field_; }
   const runtime::Field& interpreted() const { return plain_; }
+  const runtime::Field& native() const { return native_; }
   const runtime::Field& compiled() const { return ahead_; }
 
  private:
@@ -74,7 +77,7 @@ class Scene {
   }
 
   compiler::CompiledScene scene_;
-  runtime::Field field_, plain_, ahead_;
+  runtime::Field field_, plain_, native_, ahead_;
   std::vector<runtime::Ray> camera_, diffuse_;
 };
 
@@ -85,6 +88,10 @@ void compare(const char* name, const char* kind, const Scene& scene, const std::
   const auto compiled = [&scene, unled] { runtime::march(scene.compiled(), *unled); };
   add({fmt::format("{}: marcher / around emitted C++, {}", name, kind), "ns a ray", per_ray, 1.1, 0, kRounds,
        [&scene, unled] { runtime::march(scene.interpreted(), *unled); }, compiled});
+  if (scene.native().native.distance) {
+    add({fmt::format("{}: with native code / around emitted C++, {}", name, kind), "ns a ray", per_ray, 1.1, 0,
+         kRounds, [&scene, unled] { runtime::march(scene.native(), *unled); }, compiled});
+  }
   if (!scene.as_it_is().convex) return;
   const auto evaluations = [](const runtime::Field& field, const std::vector<runtime::Ray>& all) {
     return static_cast<double>(runtime::march(field, all).counters.evaluations) / static_cast<double>(all.size());
