@@ -27,20 +27,20 @@ double cubic_step(double u) {
 // Perlin's 6 u^5 - 15 u^4 + 10 u^3.
 double fade(double u) { return u * u * u * (u * (u * 6 - 15) + 10); }
 
-// Returns scattered bits for a lattice point, by SplitMix64's finalizer (sampler.h).
-std::uint64_t hash(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
-  std::uint64_t h = mix64(seed + kGoldenGamma);
-  for (const std::int64_t part : {x, y, z}) h = mix64(h ^ static_cast<std::uint64_t>(part)) + kGoldenGamma;
-  return mix64(h);
+// Mixes a coordinate of a lattice point into scattered bits, by SplitMix64's finalizer (sampler.h).
+std::uint64_t mix_in(std::uint64_t bits, std::int64_t coordinate) {
+  return mix64(bits ^ static_cast<std::uint64_t>(coordinate)) + kGoldenGamma;
 }
 
-// Returns the dot product of `v` with the vector from a cube's centre to the middle of one of its twelve edges. Four
-// edges count twice, so that four bits choose.
+// Vectors from a cube's centre to the middles of its twelve edges, of which four count twice, so that four bits
+// choose. Branches on random bits would be predicted wrong.
+constexpr glm::dvec3 kEdges[16] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0}, {1, 0, 1},  {-1, 0, 1},
+                                   {1, 0, -1}, {-1, 0, -1}, {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
+                                   {1, 1, 0},  {0, -1, 1},  {-1, 1, 0}, {0, -1, -1}};
+
 double edge_dot(std::uint64_t bits, glm::dvec3 v) {
-  const auto h = static_cast<unsigned>(bits >> 60);
-  const double first = h < 8 ? v.x : v.y;
-  const double second = h < 4 ? v.y : (h == 12 || h == 14 ? v.x : v.z);
-  return ((h & 1) != 0 ? -first : first) + ((h & 2) != 0 ? -second : second);
+  const glm::dvec3& edge = kEdges[bits >> 60];
+  return v.x * edge.x + v.y * edge.y + v.z * edge.z;
 }
 
 double mix(double a, double b, double t) { return a + (b - a) * t; }
@@ -72,11 +72,20 @@ double gradient_noise(glm::dvec3 p, std::uint64_t seed) {
   if (beyond(p)) return 0;
   const std::int64_t x = cell(p.x), y = cell(p.y), z = cell(p.z);
   const glm::dvec3 f = p - glm::floor(p);
-  const auto corner = [&](int i, int j, int k) {
-    return edge_dot(hash(x + i, y + j, z + k, seed), f - glm::dvec3(i, j, k));
-  };
   const double u = fade(f.x), v = fade(f.y), w = fade(f.z);
-  const auto side = [&](int j, int k) { return mix(corner(0, j, k), corner(1, j, k), u); };
+  const std::uint64_t bits = mix64(seed + kGoldenGamma);
+  // The corners of a cell share the bits of the coordinates mixed in first.
+  double edges[2][2][2];
+  for (int i = 0; i < 2; ++i) {
+    const std::uint64_t of_x = mix_in(bits, x + i);
+    for (int j = 0; j < 2; ++j) {
+      const std::uint64_t of_y = mix_in(of_x, y + j);
+      for (int k = 0; k < 2; ++k) {
+        edges[i][j][k] = edge_dot(mix64(mix_in(of_y, z + k)), f - glm::dvec3(i, j, k));
+      }
+    }
+  }
+  const auto side = [&](int j, int k) { return mix(edges[0][j][k], edges[1][j][k], u); };
   return mix(mix(side(0, 0), side(1, 0), v), mix(side(0, 1), side(1, 1), v), w);
 }
 
