@@ -26,7 +26,7 @@ TEST_CASE("native code leaves no trace in pictures", "[native][render]") {
     CAPTURE(text);
     const compiler::CompiledScene scene = compiled(text);
     runtime::RenderOptions options;
-    options.width = 96, options.height = 64, options.spp = 4, options.threads = 2;
+    options.width = 96, options.height = 64, options.spp = 8, options.threads = 2;
     options.native_code = false;
     const std::uint64_t expected = render(scene, options).film.hash();
     options.native_code = true;

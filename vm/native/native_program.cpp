@@ -23,6 +23,8 @@ constexpr std::size_t kMaxLanes = 16;
 // second-level cache. Bounds the memory that an untrusted program takes while it is recorded.
 constexpr std::uint32_t kMaxCost = 1 << 14;
 constexpr std::size_t kMaxOperations = 1 << 15;
+// Operations of a surface program per operation of the distance: a value, three derivatives, a radius and a tag.
+constexpr std::uint32_t kSurfaceCost = 6;
 
 // True if an instruction has an integer immediate, its number of iterations.
 bool iterates(const Program& program) {
@@ -48,7 +50,8 @@ std::vector<NativeIsa> NativeProgram::available() {
 std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram& program, RecordedResults results,
                                                             NativeIsa isa) {
   namespace memory = asmjit::VirtMem;
-  if (program.cost() > kMaxCost || iterates(program.program())) return nullptr;
+  const std::uint32_t max_cost = results == RecordedResults::Surface ? kMaxCost / kSurfaceCost : kMaxCost;
+  if (program.cost() > max_cost || iterates(program.program())) return nullptr;
   const auto graph = make_operation_graph(record_program(program, results), kMaxOperations);
   if (!graph) return nullptr;
   NativeCode code = emit_x86(*graph, isa);
