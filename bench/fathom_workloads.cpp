@@ -25,7 +25,8 @@ class ShadowRenderer {
         camera_(scene.camera, frame.width, frame.height),
         field_(make_field(scene, scene.settings.far)) {
     add_regions(field_, scene, {.threads = 1});
-    add_native_code(field_, static_cast<double>(frame.width * frame.height));
+    constexpr double kEvaluations = 20;  // of a pixel's camera ray and shadow ray
+    add_native_code(field_, kEvaluations * frame.width * frame.height);
     marcher_ = make_marcher(field_);
     picture_.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
     for (int slot = marcher_->capacity(); slot > 0; --slot) free_.push_back(static_cast<std::uint32_t>(slot - 1));

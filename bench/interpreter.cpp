@@ -4,8 +4,10 @@
 // loop over registers of one float, one point at a time.
 //
 //     build/release/bench_interpreter
+#include <chrono>
 #include <cmath>
 #include <initializer_list>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -56,6 +58,13 @@ class Scene {
     vm::force_isa(before);
   }
   bool has_native() const { return native_ && native_convex_; }
+  // Returns the time to compile the distance program and the size of its code.
+  std::string describe_native() const {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto native = vm::NativeProgram::compile(scene_.distance, vm::RecordedResults::Distance);
+    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - begin;
+    return fmt::format("compiled in {:.2f} ms to {} bytes", spent.count(), native->code_bytes());
+  }
   void run_native(int repeats) {
     for (int i = 0; i < repeats; ++i) native_->evaluate(cloud_.points(), kPoints, out_.data());
   }
@@ -129,7 +138,8 @@ int main(int argc, char** argv) {
          [&scene, repeats] { scene.interpret_convex(repeats); }, interpret});
     if (scene.has_native()) {
       add({name + ": native code / emitted C++", "ns a point", nanoseconds, bars.native, 0, kRounds,
-           [&scene, repeats] { scene.run_native(repeats); }, against(ahead.distance)});
+           [&scene, repeats] { scene.run_native(repeats); }, against(ahead.distance),
+           [&scene] { return scene.describe_native(); }});
       add({name + ": native code / machine, telling what is convex", "ns a point", nanoseconds, INFINITY, 0, kRounds,
            [&scene, repeats] { scene.run_native_convex(repeats); },
            [&scene, repeats] { scene.interpret_convex(repeats); }});

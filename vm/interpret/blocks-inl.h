@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-template <class S>
-HWY_INLINE void set_point(Vec3<BatchOf<S>>& p, BatchOf<S> x, BatchOf<S> y, BatchOf<S> z) {
+template <class N>
+HWY_INLINE void set_point(Vec3<N>& p, N x, N y, N z) {
   p = {x, y, z};
 }
-template <class S>
-HWY_INLINE void set_point(Vec3<Dual<BatchOf<S>>>& p, BatchOf<S> x, BatchOf<S> y, BatchOf<S> z) {
-  const BatchOf<S> zero = BatchOf<S>::broadcast(0.0), one = BatchOf<S>::broadcast(1.0);
+template <class N>
+HWY_INLINE void set_point(Vec3<Dual<N>>& p, N x, N y, N z) {
+  const N zero = N::broadcast(0.0), one = N::broadcast(1.0);
   p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
 }
 

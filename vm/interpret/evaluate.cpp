@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vm/interpret/evaluate.cpp"
@@ -27,11 +26,6 @@ HWY_AFTER_NAMESPACE();
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
-
-// Returns `a`, or 0 for an infinite or NaN derivative, which gives no direction.
-HWY_INLINE Batch finite_or_zero(Batch a) {
-  return select(abs(a) < Batch::broadcast(std::numeric_limits<float>::infinity()), a, Batch::broadcast(0.0f));
-}
 
 void distance_batch(const Code& program, Points points, std::size_t count, float* distance, Workspace& workspace) {
   for_each_block<Batch>(program, points, count, workspace,
@@ -57,11 +51,11 @@ void surface_batch(const Code& program, Points points, std::size_t count, Surfac
       [&](std::size_t begin, std::size_t size, std::size_t used, const T* result) HWY_ATTR {
         store(size, used, out.distance + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.v.v; });
         store(size, used, out.gradient_x + begin,
-              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dx); });
+              [&](std::size_t i) HWY_ATTR { return zero_unless_finite(result[i].v.v.dx); });
         store(size, used, out.gradient_y + begin,
-              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dy); });
+              [&](std::size_t i) HWY_ATTR { return zero_unless_finite(result[i].v.v.dy); });
         store(size, used, out.gradient_z + begin,
-              [&](std::size_t i) HWY_ATTR { return finite_or_zero(result[i].v.v.dz); });
+              [&](std::size_t i) HWY_ATTR { return zero_unless_finite(result[i].v.v.dz); });
         if (out.convex != nullptr) {
           store(size, used, out.convex + begin, [&](std::size_t i) HWY_ATTR { return result[i].v.convex; });
         }

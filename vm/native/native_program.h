@@ -22,7 +22,7 @@ namespace fathom::vm {
 
 class NativeProgram {
  public:
-  // Instruction sets of this computer that have native code; those in use by vm::isa_name() or below.
+  // Instruction sets with native code that vm::isa_name() includes, best first.
   static std::vector<NativeIsa> available();
 
   // Returns null if the program is long or has loops, or if the system grants no executable memory. `isa` is one of

@@ -24,14 +24,13 @@ class RegisterFile {
   int slot_of(std::uint32_t node) const { return values_[node].slot; }
   int slots() const { return slots_; }
 
-  // A value that must be written to its slot before its register is taken. `node` may be absent.
+  // A register, and the value that must be written from it to a slot before.
   struct Taken {
     int reg;
     bool spills = false;
     int spilled_reg = kNone, slot = kNone;
   };
-  // Takes a register for `node` at position `at`, the index of the node being computed. Registers of `pinned` nodes
-  // stay.
+  // Takes a register for `node`. Registers of `pinned` nodes stay.
   Taken take(std::uint32_t node, const std::vector<std::uint32_t>& pinned);
   // Returns registers and slots of the nodes whose last use is at position `at`. The slots are free only from the
   // next call on, because the operation at `at` still reads them, after what take() spills.

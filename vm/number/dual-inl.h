@@ -205,6 +205,7 @@ HWY_INLINE Dual<N> atan2(const Dual<N>& y, const Dual<N>& x) {
   const N s = inverse_or_zero(x.v * x.v + y.v * y.v), u = x.v * s, w = y.v * s;
   return {atan2(y.v, x.v), u * y.dx - w * x.dx, u * y.dy - w * x.dy, u * y.dz - w * x.dz};
 }
+// Returns `a`, or 0 for an infinite or NaN derivative, which gives no direction.
 template <class N>
 HWY_INLINE N zero_unless_finite(N a) {
   return select(abs(a) < N::broadcast(Precision<N>::kInfinity), a, N::broadcast(0.0));

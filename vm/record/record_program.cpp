@@ -1,6 +1,6 @@
 #include "vm/record/record_program.h"
 
-#include "vm/interpret/interpret-inl.h"
+#include "vm/interpret/blocks-inl.h"
 #include "vm/number/convexity-inl.h"
 #include "vm/number/dual-inl.h"
 #include "vm/number/tagged-inl.h"
@@ -11,15 +11,6 @@ namespace fathom::vm::HWY_NAMESPACE {
 namespace {
 
 using RecordedFloat = Recorded<Batch>;
-
-void set_point(Vec3<RecordedFloat>& p, const RecordedFloat& x, const RecordedFloat& y, const RecordedFloat& z) {
-  p = {x, y, z};
-}
-void set_point(Vec3<Dual<RecordedFloat>>& p, const RecordedFloat& x, const RecordedFloat& y, const RecordedFloat& z) {
-  const RecordedFloat zero = RecordedFloat::broadcast(0.0), one = RecordedFloat::broadcast(1.0);
-  p = {{x, one, zero, zero}, {y, zero, one, zero}, {z, zero, zero, one}};
-}
-
 using RecordedSurface = Tagged<Convex<Dual<RecordedFloat>>>;
 
 std::vector<Ref> refs(const RecordedFloat& distance) { return {distance.ref}; }
