@@ -13,7 +13,9 @@ struct Ray {
   glm::dvec3 direction;  // any finite length except zero; the marcher normalises it unless it has unit length
   double t_max = std::numeric_limits<double>::infinity();  // scene units; Field::far is a limit, too
   int side = 0;                                            // +1: starts outside, -1: inside a solid, 0: not known
-  float slope = -1;  // dg/dt expected at the origin in [-1,1]: dot(normal, direction) when it leaves a surface
+  // dg/dt expected at the origin, relative to the field's Lipschitz constant, in [-1,1]: dot(gradient, direction)
+  // when the ray leaves a surface. A guess too high only makes the first step fail.
+  float slope = -1;
   float clear = 0;   // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
 };
 

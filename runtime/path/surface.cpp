@@ -87,6 +87,7 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
     point.material = scene.surfaces[surface[i]].material;
     point.offset = rows.offset[i];
     point.clear = rows.clear[i];
+    point.steepness = rows.steepness[i];
   }
 }
 

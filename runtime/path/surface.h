@@ -30,6 +30,7 @@ struct SurfacePoint {
   std::uint32_t surface;   // index into CompiledScene::surfaces
   std::uint32_t material;  // of the surface: index into CompiledScene::materials
   glm::dvec3 place;        // the hit in the coordinates of the node; set only if the surface is `placed`
+  float steepness;         // length of the gradient, relative to the field's Lipschitz constant, in [0,1]
   float offset;            // distance along the normal at which a new ray starts, scene units
   // Distance, scene units from the new ray's origin, before which a ray on the hit's side of the surface meets
   // nothing: the solid is convex within this distance, and a ray that leaves a convex solid does not meet it again.
@@ -70,7 +71,7 @@ inline void set_spawned_ray(const Hit& hit, const SurfacePoint& point, glm::dvec
   ray.direction = direction;
   const float cosine = glm::dot(point.normal, glm::vec3(direction));
   ray.side = through ? -hit.side : hit.side;
-  ray.slope = std::abs(cosine);
+  ray.slope = std::abs(cosine) * point.steepness;
   ray.clear = !through && cosine > kMinLeaving ? point.clear : 0;
 }
 inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {

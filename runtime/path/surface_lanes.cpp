@@ -30,6 +30,7 @@ HWY_INLINE Vectors select(FloatMask m, Vectors a, Vectors b) {
 struct FacingNormal {
   Vectors normal;
   FloatMask exact;
+  Floats length;
 };
 HWY_INLINE FacingNormal facing_normal(Vectors gradient, Vectors wo, Floats side) {
   const Floats length = sqrt(dot(gradient, gradient));
@@ -41,7 +42,7 @@ HWY_INLINE FacingNormal facing_normal(Vectors gradient, Vectors wo, Floats side)
   const Floats squared = dot(turned, turned), turned_length = sqrt(squared);
   const Vectors unit = {turned.x / turned_length, turned.y / turned_length, turned.z / turned_length};
   const FloatMask turns = valid & (squared > number(kMinCosine * kMinCosine));
-  return {select(exact, normal, select(turns, unit, wo)), exact};
+  return {select(exact, normal, select(turns, unit, wo)), exact, select(valid, length, number(0))};
 }
 
 // Returns the distance from the hit within which rays that leave a convex solid meet nothing.
@@ -65,6 +66,7 @@ void set_geometry(const Field& field, std::size_t count, SurfaceRows& rows) {
     found.normal.y.store(rows.normal[1] + i);
     found.normal.z.store(rows.normal[2] + i);
     offset.store(rows.offset + i);
+    min(found.length * number(field.inv_lipschitz), number(1)).store(rows.steepness + i);
     select(found.exact & (side > number(0)) & may_be_clear, clear, number(0)).store(rows.clear + i);
   }
 }

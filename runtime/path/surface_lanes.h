@@ -16,7 +16,8 @@ struct SurfaceRows {
   alignas(64) float gradient[3][kSurfaceBatch], convex[kSurfaceBatch];
   alignas(64) float wo[3][kSurfaceBatch], side[kSurfaceBatch], width[kSurfaceBatch];
   // Results: as of SurfacePoint.
-  alignas(64) float normal[3][kSurfaceBatch], offset[kSurfaceBatch], clear[kSurfaceBatch];
+  alignas(64) float normal[3][kSurfaceBatch], steepness[kSurfaceBatch];
+  alignas(64) float offset[kSurfaceBatch], clear[kSurfaceBatch];
 };
 
 // Distance from the surface at which a new ray starts, in d_f: float cannot mistake the sides there. The part of d_f
