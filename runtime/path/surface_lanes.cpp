@@ -26,7 +26,8 @@ HWY_INLINE Vectors select(FloatMask m, Vectors a, Vectors b) {
 }
 
 // Normal that faces the ray. `exact`: the normal is the gradient's direction. Otherwise rounding or a crease turned
-// the gradient away from the ray, and the normal is turned back just far enough.
+// the gradient away from the ray, and the normal is turned back just far enough. `length`: of the gradient, 0 if it
+// is not finite.
 struct FacingNormal {
   Vectors normal;
   FloatMask exact;

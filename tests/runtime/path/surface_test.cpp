@@ -45,9 +45,9 @@ TEST_CASE("surface: a gradient that faces away is turned just far enough", "[run
   const Field field = make_field(scene);
   SurfaceRows rows{};
   const glm::vec3 wo = glm::normalize(glm::vec3(1, -0.25f, 0.5f));
-  // Gradients: across wo, away from it, of no length, not finite, and towards wo.
+  // Gradients: across wo, away from it, of no length, not finite, and towards wo, steep and level.
   const glm::vec3 across = glm::normalize(glm::vec3(0.25f, 1, 0) - 1e-3f * wo);
-  const glm::vec3 gradients[] = {across, -wo, glm::vec3(0), {INFINITY, 0, 0}, {NAN, 0, 1}, 3.0f * wo};
+  const glm::vec3 gradients[] = {across, -wo, glm::vec3(0), {INFINITY, 0, 0}, {NAN, 0, 1}, 3.0f * wo, 0.25f * wo};
   for (std::size_t i = 0; i < std::size(gradients); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       rows.gradient[axis][i] = gradients[i][axis];
@@ -70,6 +70,9 @@ TEST_CASE("surface: a gradient that faces away is turned just far enough", "[run
   // A ray's way is clear only where the normal is the gradient's.
   for (const std::size_t i : {0, 1, 2, 3, 4}) CHECK(rows.clear[i] == 0);
   CHECK(rows.clear[5] > 0.4f);
+  for (const std::size_t i : {2, 3, 4}) CHECK(rows.steepness[i] == 0);
+  CHECK(rows.steepness[5] == 1);
+  CHECK(rows.steepness[6] == Approx(0.25));
 }
 
 TEST_CASE("surface: new rays start clear of the surface, on the side asked for", "[runtime]") {
@@ -80,6 +83,16 @@ TEST_CASE("surface: new rays start clear of the surface, on the side asked for",
   CHECK(spawn_origin(hit, point, false).y > 1 + 15 * static_cast<double>(kDistanceError));
   CHECK(spawn_origin(hit, point, true).y < 1 - 15 * static_cast<double>(kDistanceError));
   CHECK(find(scene, {{0, 1, 0}, {0, 1, 0}, 1, 1e-3f}).offset == Approx(2e-3f));
+}
+
+// A ray from a level surface once expected the slope of the normal, and nearly every first step was too long.
+TEST_CASE("surface: a ray expects the slope of the gradient", "[runtime]") {
+  SurfacePoint point{};
+  point.normal = {0, 1, 0};
+  point.steepness = 0.25f;
+  const Hit hit{{0, 0, 0}, {0, 1, 0}, 1, 1e-7f};
+  CHECK(spawn_ray(hit, point, {0, 1, 0}, false).slope == Approx(0.25));
+  CHECK(spawn_ray(hit, point, {0.8, -0.6, 0}, true).slope == Approx(0.15));
 }
 
 }  // namespace
