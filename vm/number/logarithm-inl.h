@@ -13,6 +13,7 @@
 #include <algorithm>
 
 #include "vm/number/interval_elementary-inl.h"
+#include "vm/number/pole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -32,6 +33,7 @@ struct Logarithm {
   // The f32 value is in [u exp(-below kUnit), u exp(above kUnit) + tiny]. Infinite `below`: the f32 value may be 0.
   // Infinite `above`: it may be infinite. If both are infinite, it may be NaN.
   double below, above, tiny;
+  Pole pole;  // of ln u
 
   Logarithm() {}
   Logarithm(const Logarithm& other) { *this = other; }
@@ -40,6 +42,7 @@ struct Logarithm {
     if (!known) return *this;
     v = other.v, dx = other.dx, dy = other.dy, dz = other.dz, norm = other.norm;
     below = other.below, above = other.above, tiny = other.tiny;
+    pole = other.pole;
     return *this;
   }
 };
@@ -49,12 +52,13 @@ inline constexpr double kLeastLogarithm = -87, kLargestLogarithm = 88;
 // kRoundedLogarithm: error of a rounding to f32, as an error of the logarithm, in kUnit. kSubnormal: maximum absolute
 // error of a subnormal result.
 inline constexpr double kRoundedLogarithm = 1.001, kSubnormal = 0x1p-126;
+inline constexpr double kFarAbove = -66;  // far above the logarithm of kSubnormal
 
 // Returns the bounds of an f32 result, given its errors without underflow and overflow.
 inline Logarithm make_logarithm(Interval v, Interval dx, Interval dy, Interval dz, double norm, double below,
                                 double above, double tiny) {
-  // Above this logarithm, so many subnormal errors are a relative error of less than a unit.
-  constexpr double kFarAbove = -66, kMostTiny = 64 * kSubnormal;
+  // Above kFarAbove, so many subnormal errors are a relative error of less than a unit.
+  constexpr double kMostTiny = 64 * kSubnormal;
   Logarithm r;
   r.known = true;
   r.v = v, r.dx = dx, r.dy = dy, r.dz = dz;
@@ -104,8 +108,22 @@ inline Interval log_of_sum(Interval a, Interval b) {
   return {lo - kSlack * (1 + std::fabs(lo)), hi + kSlack * (1 + std::fabs(hi))};
 }
 
+// Returns the bounds of ln(u + w), given those of a = ln u, which tends to minus infinity at a pole, and of b = ln w.
+inline Logarithm log_sum_at_pole(const Logarithm& a, const Logarithm& b) {
+  if (b.pole.known() || !a.pole.tends_to(-1) || !(b.v.lo > kFarAbove && b.below + b.above < kUnbounded)) return {};
+  const Pole& p = a.pole;
+  const double least = b.v.lo - b.below * kUnit;
+  const double norm = bound(b.norm + weighted(p.middle, p.slope, p.slope_growth, p.reach.hi, least));
+  const double error = weighted(p.middle, p.error, p.error_growth, p.reach.hi, least);
+  const Interval all{-norm, norm};
+  constexpr double kFlushed = 1;  // more than the share of a u that underflows in a normal sum
+  return make_logarithm(log_of_sum(a.v, b.v), all, all, all, norm, b.below + error + kFlushed + kRoundedLogarithm,
+                        b.above + error + kFlushed + kRoundedLogarithm, b.tiny);
+}
 // Returns the bounds of ln(u + w), given those of a = ln u and b = ln w.
 inline Logarithm log_sum(const Logarithm& a, const Logarithm& b) {
+  if (a.pole.known()) return log_sum_at_pole(a, b);
+  if (b.pole.known()) return log_sum_at_pole(b, a);
   const LogWeight weight(a.v, b.v);
   // If only u may underflow, the f32 sum is at least w, a share 1 - most of the exact sum.
   const bool maybe_nan = !(std::min(a.below, a.above) < kUnbounded && std::min(b.below, b.above) < kUnbounded);

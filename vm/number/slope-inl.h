@@ -8,7 +8,8 @@
 // |grad(a + b)| <= |grad a| + |grad b|. A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s)
 // is J^T F / |F|, no longer than the largest singular value of J, whose square is at most the largest row sum of |J^T
 // J| (Gershgorin). So distances have norm 1 even where they are 0 and the quotient of intervals is unbounded.
-// A value made of exponentials keeps bounds of its logarithm (logarithm-inl.h).
+// A value made of exponentials keeps bounds of its logarithm (logarithm-inl.h), and a quotient whose divisor may be 0
+// keeps bounds near the pole (pole-inl.h).
 //
 // Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
 // "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: the error of an operation is its operands'
@@ -64,6 +65,7 @@ struct Slope {
   bool nonnegative;  // true if neither the exact nor the f32 value can be negative
   Squares squares = {};
   Logarithm logarithm = {};
+  Pole pole = {};
 
   double error() const { return std::max(below, above); }  // bound on |f32 value - exact value|, in kUnit
 
@@ -144,7 +146,25 @@ inline Logarithm combined(const Slope& a, const Slope& b, const Combine& combine
   return of_a.known && of_b.known ? combine(of_a, of_b) : Logarithm();
 }
 
-inline Slope operator-(const Slope& a) { return make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.above, a.below); }
+// Returns the range of the exact and the f32 values.
+inline Interval exact_or_seen(const Slope& a) { return hull(a.v, seen(a)); }
+inline Pole sum_pole(const Slope& a, const Slope& b) { return shifted(a.pole, exact_or_seen(b), b.norm, b.error()); }
+inline Pole product_pole(const Slope& a, const Slope& b) {
+  return b.norm == 0 ? scaled(a.pole, exact_or_seen(b), b.error()) : Pole();
+}
+// Returns the pole of the larger value.
+inline Pole larger_pole(const Slope& a, const Pole& pole_a, const Slope& b, const Pole& pole_b, int sign) {
+  if (pole_a.known() && pole_b.known()) return maximum(pole_a, pole_b);
+  const Slope& other = pole_a.known() ? b : a;
+  const Interval range = exact_or_seen(other);
+  return maximum(pole_a.known() ? pole_a : pole_b, sign < 0 ? -range : range, other.norm, other.error());
+}
+
+inline Slope operator-(const Slope& a) {
+  Slope r = make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.above, a.below);
+  r.pole = -a.pole;
+  return r;
+}
 inline Slope operator+(const Slope& a, const Slope& b) {
   const Interval sum = seen(a) + seen(b);
   Slope r = make_slope(a.v + b.v, a.dx + b.dx, a.dy + b.dy, a.dz + b.dz, a.norm + b.norm,
@@ -158,11 +178,14 @@ inline Slope operator+(const Slope& a, const Slope& b) {
     r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
   r.logarithm = combined(a, b, log_sum);
+  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? sum_pole(a, b) : sum_pole(b, a);
   return r;
 }
 inline Slope operator-(const Slope& a, const Slope& b) {
-  return make_slope(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm,
-                    rounded_below(a.v - b.v, a.below + b.above), rounded_above(a.v - b.v, a.above + b.below));
+  Slope r = make_slope(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm,
+                       rounded_below(a.v - b.v, a.below + b.above), rounded_above(a.v - b.v, a.above + b.below));
+  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? sum_pole(a, -b) : sum_pole(-b, a);
+  return r;
 }
 // Returns a b, given the errors of f32.
 inline Slope product(const Slope& a, const Slope& b, double below, double above) {
@@ -171,6 +194,7 @@ inline Slope product(const Slope& a, const Slope& b, double below, double above)
                        times(ma, b.norm) + times(mb, a.norm), below, above);
   r.nonnegative = a.nonnegative && b.nonnegative;
   r.logarithm = combined(a, b, log_product);
+  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? product_pole(a, b) : product_pole(b, a);
   return r;
 }
 // Returns a b where a's f32 value A may be infinite. For an f32 factor B > 0, A >= a - below makes A B at least
@@ -196,6 +220,7 @@ inline Slope operator/(const Slope& a, const Slope& b) {
   if (contains(sb, 0)) {
     Slope r = jump(whole_line(), whole_line());
     r.logarithm = combined(a, b, log_quotient);
+    r.pole = pole_of_quotient(exact_or_seen(a), a.norm, a.error(), b.norm, b.error());
     return r;
   }
   const Interval q = a.v / b.v, inverse = Interval{1, 1} / b.v;
@@ -238,7 +263,9 @@ inline Slope min(const Slope& a, const Slope& b) {
   if (seen_b.hi < seen_a.lo) return b;
   const double most =
       maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((std::min(seen_a.hi, seen_b.hi) - v.lo) / kUnit);
-  return either(a, b, v, std::max(a.below, b.below), std::min(std::max(a.above, b.above), most));
+  Slope r = either(a, b, v, std::max(a.below, b.below), std::min(std::max(a.above, b.above), most));
+  if (a.pole.known() || b.pole.known()) r.pole = -larger_pole(a, -a.pole, b, -b.pole, -1);
+  return r;
 }
 inline Slope max(const Slope& a, const Slope& b) {
   const Interval seen_a = seen(a), seen_b = seen(b), v = max(a.v, b.v);
@@ -248,6 +275,7 @@ inline Slope max(const Slope& a, const Slope& b) {
       maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((v.hi - std::max(seen_a.lo, seen_b.lo)) / kUnit);
   Slope r = either(a, b, v, std::min(std::max(a.below, b.below), most), std::max(a.above, b.above));
   r.nonnegative = a.nonnegative || b.nonnegative;
+  if (a.pole.known() || b.pole.known()) r.pole = larger_pole(a, a.pole, b, b.pole, 1);
   return r;
 }
 inline Slope abs(const Slope& a) {
@@ -255,6 +283,10 @@ inline Slope abs(const Slope& a) {
   const Interval slope = s.lo >= 0 ? Interval{1, 1} : s.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1};
   Slope r = chain(a, abs(a.v), slope, s.lo >= 0 ? a.below : a.error(), s.lo >= 0 ? a.above : a.error());
   r.nonnegative = true;
+  if (a.pole.known()) {
+    r.pole = maximum(a.pole, -a.pole);
+    r.pole.reach = abs(a.pole.reach);
+  }
   return r;
 }
 inline Slope sqr(const Slope& a) {

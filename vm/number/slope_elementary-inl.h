@@ -74,6 +74,8 @@ inline Slope exp(const Slope& a) {
   r.nonnegative = true;
   constexpr double kOwn = kKernelUnits * kRoundedLogarithm;
   r.logarithm = make_logarithm(a.v, a.dx, a.dy, a.dz, a.norm, a.below + kOwn, a.above + kOwn, 0);
+  r.logarithm.pole = a.pole;
+  if (a.pole.known()) r.logarithm.pole.error += kOwn;
   return r;
 }
 // Returns the logarithm of a value by the bounds that it has kept of it.

@@ -66,6 +66,39 @@ inline std::vector<Step> random_formula(std::uint64_t seed) {
   return steps;
 }
 
+// Appends a random smooth union by exponentials of a plane and a quotient that is infinite on a plane.
+inline void append_pole(Random& random, std::vector<Step>& steps) {
+  using vm::Opcode;
+  static const double kSharpness[] = {0.5, 3, 11, 30};
+  const double k = kSharpness[random.below(4)] * (random.chance(0.8) ? -1 : 1);
+  steps.push_back({Opcode::Constant, {random.chance(0.5) ? 0.1 : random.uniform(-2, 2)}});
+  steps.push_back({Opcode::X});
+  steps.push_back({Opcode::Y});
+  steps.push_back({Opcode::Scale, {random.below(3) * 0.4}});
+  steps.push_back({Opcode::Add});
+  steps.push_back({Opcode::Offset, {random.below(3) - 1.0}});
+  steps.push_back({Opcode::Divide});
+  if (random.chance(0.3)) steps.push_back({Opcode::Offset, {random.uniform(-1, 1)}});
+  if (random.chance(0.8)) steps.push_back({Opcode::Abs});
+  if (random.chance(0.5)) {
+    steps.push_back({Opcode::Z});
+    steps.push_back({random.chance(0.5) ? Opcode::Add : Opcode::Minus});
+  }
+  if (random.chance(0.2)) steps.push_back({Opcode::Negate});
+  if (random.chance(0.5)) {
+    steps.push_back({random.chance(0.5) ? Opcode::Y : Opcode::Z});
+    steps.push_back({random.chance(0.7) ? Opcode::Max : Opcode::Min});
+  }
+  steps.push_back({Opcode::Scale, {k}});
+  steps.push_back({Opcode::Exp});
+  steps.push_back({Opcode::X});
+  steps.push_back({Opcode::Scale, {k}});
+  steps.push_back({Opcode::Exp});
+  steps.push_back({Opcode::Add});
+  steps.push_back({Opcode::Log});
+  steps.push_back({Opcode::Scale, {1 / k}});
+}
+
 // Appends a random tree of smooth unions by exponentials, their kin and hard unions, over distances from axes and
 // planes.
 inline void append_exponentials(Random& random, int size, std::vector<Step>& steps) {

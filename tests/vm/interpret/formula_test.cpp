@@ -189,6 +189,40 @@ TEST_CASE("bounds of sums of exponentials hold", "[formula][slope]") {
   CHECK(counts.error > counts.boxes * 2 / 3);
 }
 
+TEST_CASE("bounds of smooth unions near poles hold", "[formula][slope]") {
+  BoundCounts counts;
+  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
+    Random random(seed);
+    std::vector<Step> steps;
+    append_pole(random, steps);
+    check_slope_bounds(steps, seed, counts);
+  }
+  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
+                        << " boxes have a finite slope and float error");
+  CHECK(counts.lipschitz > counts.boxes * 2 / 3);
+}
+
+// The pole of 0.1 / x is a wall on both sides of which the quotient's part of the union vanishes.
+TEST_CASE("a smooth union has a bound where an operand is infinite, unless only on one side", "[formula][slope]") {
+  vm::Workspace workspace;
+  const auto bound = [&](std::vector<Step> quotient) {
+    quotient.insert(quotient.begin(), {{Opcode::Constant, {0.1}}, {Opcode::X}, {Opcode::Divide}});
+    for (const Step& step :
+         {Step{Opcode::Scale, {-30}}, Step{Opcode::Exp}, Step{Opcode::Y}, Step{Opcode::Scale, {-30}},
+          Step{Opcode::Exp}, Step{Opcode::Add}, Step{Opcode::Log}, Step{Opcode::Scale, {-1.0 / 30}}}) {
+      quotient.push_back(step);
+    }
+    return vm::evaluate_slope(formula(quotient), dvec3(-0.25), dvec3(0.25), workspace);
+  };
+  const vm::SlopeBound both_sides = bound({{Opcode::Abs}});
+  CHECK(both_sides.lipschitz < 20);
+  CHECK(both_sides.float_error < 1e-4);
+  CHECK(bound({{Opcode::Abs}, {Opcode::Y}, {Opcode::Max}}).lipschitz < 20);
+  CHECK(!std::isfinite(bound({}).lipschitz));
+  CHECK(!std::isfinite(bound({{Opcode::Y}, {Opcode::Max}}).lipschitz));
+  CHECK(!std::isfinite(bound({{Opcode::Abs}, {Opcode::Negate}}).lipschitz));
+}
+
 TEST_CASE("a smooth union by exponentials is no steeper than its operands", "[formula][slope]") {
   vm::Workspace workspace;
   for (const double k : {0.1, 11.0, 30.0, 300.0}) {
