@@ -82,7 +82,7 @@ HWY_EXPORT(clip_rays);
 void clip(RayBlock& rays, std::size_t first, const compiler::Box& box, double far) {
   HWY_DYNAMIC_DISPATCH(clip_rays)(rays, first, box, far);
   for (std::size_t i = first; i < rays.count; ++i) {
-    if (rays.entry[i] > 0) rays.side[i] = 1;
+    if (rays.entry[i] > 0 && rays.side[i] == 0) rays.side[i] = 1;
   }
 }
 

@@ -55,7 +55,8 @@ struct RayBlock {
 
 // Clips the rays from `first` on. Directions become unit vectors, except that a unit vector to float precision stays
 // as it is. Origins move to where the ray enters the box, or to the end of its clear length if that is further on. A
-// ray whose origin moved starts outside (side 1). Lengths end where the ray leaves the box, or at `far`.
+// ray whose origin moved and whose side is not known starts outside (side 1). Lengths end where the ray leaves the
+// box, or at `far`.
 void clip(RayBlock& rays, std::size_t first, const compiler::Box& box, double far);
 
 }  // namespace fathom::runtime
