@@ -166,10 +166,11 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
     surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
   const NodeFacts& all = known[optimised.root];
-  const FormulaCells cells = formula_cells(optimised.graph, optimised.root, known).value_or(FormulaCells{{}, 0});
+  const FormulaCells cells =
+      formula_cells(optimised.graph, optimised.root, known).value_or(FormulaCells{{}, 0, all.cancellation});
   return CompiledField{
       std::move(*distance), std::move(*surface), all.box,       contents(optimised.graph, optimised.root, known),
-      all.lipschitz,        all.cancellation,    all.certified, cells.box,
+      all.lipschitz,        cells.cancellation,  all.certified, cells.box,
       cells.rest_lipschitz};
 }
 
@@ -236,12 +237,13 @@ std::string summarise(std::size_t nodes, NodeFacts known, bool in_cells, glm::dv
 
 // Warns when the float error of distances near the surface exceeds a ten-thousandth of the distance from the camera
 // to its target.
-void warn_of_cancellation(const Scene& scene, const std::vector<NodeFacts>& known, const Camera& camera,
-                          Diagnostics& diagnostics) {
-  const double error = vm::kFloatError * known[scene.root].cancellation;
+// `cancellation`: of the compiled field.
+void warn_of_cancellation(const Scene& scene, const std::vector<NodeFacts>& known, double cancellation,
+                          const Camera& camera, Diagnostics& diagnostics) {
+  const double error = vm::kFloatError * cancellation;
   const double most = 1e-4 * glm::length(camera.target - camera.position);
   // Marching allows for numbers up to 1 everywhere (runtime/field/field.h).
-  if (error <= most || known[scene.root].cancellation <= 1) return;
+  if (error <= most || cancellation <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {
     if (known[child].cancellation == known[scene.root].cancellation) worst = child;
@@ -316,7 +318,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
       assemble_all(elaborated->formulas, source, options.limits, diagnostics);
   if (!formulas) return std::nullopt;
 
-  warn_of_cancellation(field, known, elaborated->camera, diagnostics);
+  warn_of_cancellation(field, known, whole->cancellation, elaborated->camera, diagnostics);
   warn_of_smallness(field, known, elaborated->camera, diagnostics);
   warn_of_unbounded_formulas(elaborated->scene, diagnostics);
   if (options.lint) {
@@ -339,7 +341,8 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(*formulas),
                        count_nodes(field),
                        ""};
-  result.summary = summarise(result.node_count, known[field.root], !result.formula_box.empty(), origin);
+  const bool in_cells = !result.certified && !result.formula_box.empty();
+  result.summary = summarise(result.node_count, known[field.root], in_cells, origin);
   return result;
 }
 

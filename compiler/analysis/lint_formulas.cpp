@@ -5,13 +5,14 @@
 
 #include "compiler/analysis/lints.h"
 #include "compiler/analysis/report.h"
+#include "compiler/derive/formula_field.h"
 
 namespace fathom::compiler {
 
 void warn_of_unbounded_formulas(const Scene& scene, Diagnostics& diagnostics) {
   bool any = false;
   for (NodeId id = 0; id <= scene.root; ++id) {
-    any = any || (scene.graph.kind(id) == Kind::Bounded && scene.graph.params(id)[8] != 1);
+    any = any || (scene.graph.kind(id) == Kind::Bounded && !holds_everywhere(proof_of(scene.graph, id)));
   }
   if (!any) return;
   const FieldGraph field(scene);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "compiler/analysis/report.h"
+#include "compiler/derive/formula_field.h"
 #include "compiler/geometry/affine.h"
 #include "compiler/passes/containment.h"
 #include "compiler/passes/signs.h"
@@ -264,10 +265,13 @@ class Linter {
     if (kind(worst) == Kind::Taper) help = "taper less: steps shrink with the smallest scale";
     if (kind(worst) == Kind::Twist)
       help = "turn less, or make what is turned narrower: its radius times the turn counts";
+    const bool in_cells =
+        kind(worst) == Kind::Bounded && proof_of(graph_, worst) != FormulaProof::Proved && field_.has_cells();
     const std::string below = worst == id ? "" : fmt::format(", most of it by the {} below", word(worst));
     warn("W0508", id,
          fmt::format("this {} makes steps {:.3g} times shorter{}", word(id), field_.steepness(id), below),
-         "rays take that many times longer here", help);
+         in_cells ? "rays take that many times longer where it is steepest" : "rays take that many times longer here",
+         help);
   }
 
   // True if a thin child makes the node as thin.

@@ -64,7 +64,9 @@ std::vector<NodeId> FieldGraph::children(NodeId id) const {
   return {graph().children(all[0])[0]};
 }
 
-bool FieldGraph::in_cells() const { return formula_cells(graph(), root(), known_).has_value(); }
+bool FieldGraph::has_cells() const { return formula_cells(graph(), root(), known_).has_value(); }
+
+bool FieldGraph::in_cells() const { return !known_[root()].certified && has_cells(); }
 
 bool FieldGraph::estimates(NodeId id) const {
   if (known_[id].certified) return false;

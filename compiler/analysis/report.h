@@ -74,6 +74,8 @@ class FieldGraph {
   double cost(NodeId id) const { return cost_[id]; }
   // Returns the node's constant before levelling.
   double steepness(NodeId id) const { return steepness_[id]; }
+  // True if formulas have bounds cell by cell (compiler/analysis/formula_cells.h).
+  bool has_cells() const;
   // True if every constant that is not proved is proved cell by cell.
   bool in_cells() const;
   // True if the node's constant is not proved, although all of its children's are.

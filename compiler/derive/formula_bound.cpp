@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <memory>
@@ -60,7 +61,7 @@ class Bisection {
       const Cell steepest = cells_.top();
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
-    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0};
+    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0, 0};
     double smallest = kInfinity;
     for (; !cells_.empty(); cells_.pop()) {
       const vm::SlopeBound& b = cells_.top().bound;
@@ -149,6 +150,31 @@ class Bisection {
   double seen_ = 0;
 };
 
+// Returns FormulaBound::at_surface: the third quartile of the slopes at the points nearest to the surface, by their
+// values and slopes, of some that are spread evenly over the box. Points are multiples of irrational numbers,
+// modulo 1.
+double slope_at_surface(const vm::VerifiedProgram& program, const Box& box) {
+  constexpr std::ptrdiff_t kPoints = 256, kNearest = 16;
+  constexpr glm::dvec3 kSteps(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+  struct Sample {
+    double distance, slope;
+  };
+  vm::Workspace workspace;
+  std::vector<Sample> samples;
+  for (std::ptrdiff_t i = 1; i <= kPoints; ++i) {
+    const glm::dvec3 share = glm::fract(static_cast<double>(i) * kSteps);
+    const vm::SurfaceValue found = vm::evaluate_surface(program, box.lo + share * (box.hi - box.lo), workspace);
+    const double slope = glm::length(found.gradient);
+    if (slope > 0 && std::isfinite(found.distance)) samples.push_back({std::abs(found.distance) / slope, slope});
+  }
+  const std::ptrdiff_t nearest = std::min(kNearest, std::ssize(samples)), quartile = 3 * nearest / 4;
+  if (nearest == 0) return 0;
+  std::ranges::nth_element(samples, samples.begin() + nearest - 1, {}, &Sample::distance);
+  std::ranges::nth_element(samples.begin(), samples.begin() + quartile, samples.begin() + nearest, {},
+                           &Sample::slope);
+  return samples[static_cast<std::size_t>(quartile)].slope;
+}
+
 // Returns nullopt if no machine runs the formula. A later step then refuses the scene's program, which contains the
 // formula.
 std::optional<vm::VerifiedProgram> program_of(const Graph& graph, NodeId formula) {
@@ -178,8 +204,10 @@ std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
-  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity, 1};
-  return Bisection(*program, box, coordinates_of(graph, formula)).run();
+  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, 0, kInfinity, 1};
+  FormulaBound bound = Bisection(*program, box, coordinates_of(graph, formula)).run();
+  if (box.finite()) bound.at_surface = slope_at_surface(*program, box);
+  return bound;
 }
 
 NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {

@@ -14,6 +14,9 @@ struct FormulaBound {
   double least, most;  // of the values
   double lipschitz;    // of the formula within the box; infinite if the search found no bound
   double seen;         // the steepest gradient that the search evaluated
+  // Length of the gradient near where the formula is 0: three quarters of some points have less. 0 in an infinite
+  // box.
+  double at_surface;
   double float_error;  // of an evaluation in float, scene units; may be infinite
   double unbounded_share = 0;  // of the box: of the cells without a bound that the search ended with
   Box unbounded = {};          // the smallest cell without a bound that the search met; empty if there is none

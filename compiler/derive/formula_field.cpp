@@ -16,7 +16,12 @@ constexpr double kInfiniteSide = 1e18;  // replaces an infinite side in the prog
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
 
 FormulaProof proof_by(const FormulaBound& bound) {
-  if (std::isfinite(bound.lipschitz)) return FormulaProof::Proved;
+  // Below this ratio, the evaluations that bounds in cells save do not repay them in a short formula.
+  constexpr double kSteep = 32;
+  if (std::isfinite(bound.lipschitz)) {
+    return bound.at_surface > 0 && bound.lipschitz > kSteep * bound.at_surface ? FormulaProof::Steep
+                                                                               : FormulaProof::Proved;
+  }
   // Cells are of use only if some of them have a bound.
   constexpr double kMaxUnbounded = 0.9;
   return bound.unbounded_share < kMaxUnbounded ? FormulaProof::InCells : FormulaProof::None;
@@ -31,7 +36,7 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   // A field that does not change has its box as its only surface, so any constant will do.
   constexpr double kLeast = 1e-9, kRounding = 1 + 1e-9;
   params.insert(params.end(), {lipschitz > kLeast ? lipschitz * kRounding : 1,
-                               proof == FormulaProof::Proved ? cancellation : 0.0, static_cast<double>(proof)});
+                               holds_everywhere(proof) ? cancellation : 0.0, static_cast<double>(proof)});
   const NodeId children[] = {field};
   return maker.make(Kind::Bounded, params, children, origin);
 }
@@ -69,7 +74,7 @@ NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const So
   const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
   const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
-  const FormulaProof proof = child.certified ? proof_by(bound) : FormulaProof::None;
+  const FormulaProof proof = !child.certified ? FormulaProof::None : proved ? FormulaProof::Proved : proof_by(bound);
   const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
   return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
                  child.cancellation + magnitude_of(bound.float_error), proof, origin);

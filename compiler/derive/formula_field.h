@@ -19,7 +19,11 @@ enum class FormulaProof {
   None,     // the constant is a guess, and no cell of the box has a bound
   Proved,   // the constant holds in the whole box
   InCells,  // the constant is a guess, but cells of the box have bounds (compiler/analysis/formula_cells.h)
+  Steep,    // the constant holds in the whole box, but is much larger than the usual slope near the surface
 };
+constexpr bool holds_everywhere(FormulaProof proof) {
+  return proof == FormulaProof::Proved || proof == FormulaProof::Steep;
+}
 FormulaProof proof_of(const Graph& graph, NodeId bounded);
 
 // Makes a formula the field of a box with any corners.

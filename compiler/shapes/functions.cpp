@@ -48,7 +48,7 @@ NodeSpec function(Kind kind, std::string_view name, std::string_view doc, std::v
 }
 
 // Bounded. Derived: the box's corners, the Lipschitz constant within the box, the scale of the float error, and the
-// constant's FormulaProof (compiler/derive/formula_field.h).
+// constant's FormulaProof (compiler/derive/formula_field.h), of which 1 and 3 hold in the whole box.
 NodeFacts know_bounded(Params p, std::span<const NodeFacts>) {
   NodeFacts k;
   constexpr double kEndless = 1e18, kInfinity = std::numeric_limits<double>::infinity();
@@ -59,7 +59,7 @@ NodeFacts know_bounded(Params p, std::span<const NodeFacts>) {
   }
   k.lipschitz = p[6];
   k.cancellation = p[7];
-  k.certified = p[8] == 1;
+  k.certified = p[8] == 1 || p[8] == 3;
   k.outside = k.inside = k.certified ? Exactness::Bound : Exactness::Estimate;
   k.reach = k.reach_max = std::min(1.0, p[6]);
   return k;

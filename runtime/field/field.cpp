@@ -86,12 +86,14 @@ void become_large(Field& field, const FarLevels& levels) {
   if (!field.cells) field.max_informative_length = 0;
 }
 
-// Makes marchers step by bounds cell by cell. Nothing else is known of the field's slope, so the search in double
+// Makes marchers step by bounds cell by cell. If nothing else is known of the field's slope, the search in double
 // relies on interval arithmetic alone.
 void add_cells(Field& field, const compiler::CompiledField& compiled) {
   field.cells = std::make_shared<const SlopeCells>(compiled.distance, compiled.formula_box, compiled.rest_lipschitz);
-  field.lipschitz = std::numeric_limits<double>::infinity();
-  field.inv_lipschitz = 0;
+  if (!compiled.certified) {
+    field.lipschitz = std::numeric_limits<double>::infinity();
+    field.inv_lipschitz = 0;
+  }
   field.max_informative_length = std::numeric_limits<double>::infinity();
   field.cancellation = std::max(field.cancellation, field.cells->cancellation());
   field.convex = false;

@@ -22,7 +22,7 @@ struct Field {
   const vm::VerifiedProgram* distance;
   const vm::VerifiedProgram* surface;  // the same field with `tag` instructions
   compiler::Box bound;                 // the scene's bound with a margin, outside which the field is positive
-  double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|; infinite with `cells`
+  double lipschitz;                    // |f(p) - f(q)| <= lipschitz * |p - q|; may be infinite with `cells`
   double far;  // maximum length of rays, scene units; may be infinite when the bound is finite
   float band;  // distance below which a marcher tries to cross the surface, scene units
   float inv_lipschitz;
@@ -36,8 +36,8 @@ struct Field {
   // below evaluate to the same bits with regions and without.
   FarLevels far_levels;
   std::shared_ptr<const Regions> regions;  // null unless the scene gains by regions
-  // Bounds cell by cell, if the field has formulas without a bound of their slope (CompiledField::formula_box), or
-  // null. Then `lipschitz` is infinite.
+  // Bounds cell by cell, if the field has formulas without a bound of their slope or with a large one
+  // (CompiledField::formula_box), or null.
   std::shared_ptr<const SlopeCells> cells;
   // True if float distances come with a convexity radius (vm::evaluate_convex), which saves evaluations in a scene
   // made mostly of convex shapes. False for large scenes.
@@ -61,6 +61,9 @@ struct Field {
 
   // True if the convexity radius is available, which `evaluator` does not compute.
   bool has_convexity() const { return convex && evaluator == nullptr; }
+
+  // True if the field may jump, or be infinitely steep.
+  bool may_jump() const { return std::isinf(lipschitz); }
 
   // Lipschitz constant of the values that marchers step by, to_steps().
   double step_lipschitz() const { return cells ? 1 : lipschitz; }

@@ -19,6 +19,8 @@ namespace fathom::runtime {
 
 // Shares of a radius and of the way to a block's end that count: more than rounding takes.
 inline constexpr float kTrustedRadius = 1 - 0x1p-18f, kTrustedWay = 1 - 0x1p-12f;
+// Radius where there is no bound: keeps the sign of the value.
+inline constexpr float kNoRadius = 0x1p-126f;
 // Replaces an infinite value or way, for use in products with 0.
 inline constexpr float kFarAway = 1e30f;
 
@@ -80,7 +82,7 @@ void to_radii_lanes(const SlopeGrid& grid, const vm::Points& points, std::size_t
       for (int level = 0; level < grid.levels; ++level) best = max(best, LevelRadius(grid, level)(point, size));
       radius = select(in_grid, best, radius);
     }
-    radius = radius * constant_of(kTrustedRadius);
+    radius = max(radius * constant_of(kTrustedRadius), min(size, constant_of(kNoRadius)));
     const Batch found{hn::CopySign(radius.v, value.v)};
     select(is_nan(value), value, found).store(values + i);
   }
@@ -132,12 +134,14 @@ std::vector<float> inverse_block_slopes(SlopeLevel level, std::size_t edge, floa
 }
 
 // Returns a cancellation that covers the float errors of most cells, given those of all cells that may hold a zero.
-float typical_cancellation(std::vector<float> errors) {
+// In a grid of length `extent`, it is limited: a field that is level in most cells has errors of any size there.
+float typical_cancellation(std::vector<float> errors, float extent) {
+  constexpr float kMost = 32;
   std::erase(errors, 0.0f);
   if (errors.empty()) return 0;
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
   std::nth_element(errors.begin(), middle, errors.end());
-  return 2 * *middle / static_cast<float>(vm::kFloatError);
+  return std::min(2 * *middle / static_cast<float>(vm::kFloatError), kMost * std::max(1.0f, extent));
 }
 
 }  // namespace
@@ -151,7 +155,8 @@ SlopeCells::SlopeCells(const vm::VerifiedProgram& program, const compiler::Box& 
   grid_.formula_hi = to_floats(formulas.hi);
   for (std::size_t a = 0; a < 3; ++a) grid_.extent[a] = grid_.hi[a] - grid_.lo[a];
   std::vector<SlopeLevel> levels = build_slope_levels(program, box, SlopeGrid::kLevels);
-  cancellation_ = typical_cancellation(levels.back().errors);
+  cancellation_ =
+      typical_cancellation(levels.back().errors, std::max({grid_.extent[0], grid_.extent[1], grid_.extent[2]}));
   const float rest = static_cast<float>(rest_lipschitz);
   grid_.inverse_rest = rest > 0 ? 1 / rest : kFarAway;
   grid_.levels = static_cast<int>(levels.size());
@@ -171,6 +176,13 @@ SlopeCells::SlopeCells(const vm::VerifiedProgram& program, const compiler::Box& 
 
 void SlopeCells::to_radii(vm::Points points, std::size_t count, float* values) const {
   HWY_DYNAMIC_DISPATCH(to_radii_lanes)(grid_, points, count, values);
+}
+
+void SlopeCells::inverse_slopes(vm::Points points, std::size_t count, float* out) const {
+  constexpr float kValue = 0x1p-40f;  // so small that the slope alone decides the radius
+  std::fill_n(out, count, kValue);
+  to_radii(points, count, out);
+  for (std::size_t i = 0; i < count; ++i) out[i] = out[i] > kNoRadius ? out[i] / kValue : 0;
 }
 
 // In float: a radius has no more digits than its slope.

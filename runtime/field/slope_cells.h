@@ -3,8 +3,8 @@
 // A grid of several levels covers the formulas' boxes. A cell knows the maximum slope of the field over itself and
 // its neighbours. A value then tells how far the field has no zero: the value over that slope, but no further than
 // the neighbours reach. Among cells that hold no zero, a radius reaches as far as they do. The level that tells most
-// counts. The radius is 0 in a cell without a bound, e.g. because a formula jumps there. The certified search then
-// decides by interval arithmetic along the ray (runtime/march/certify.h).
+// counts. The radius is next to 0 in a cell without a bound, e.g. because a formula jumps there. The certified search
+// then decides by interval arithmetic along the ray (runtime/march/certify.h).
 //
 //     const SlopeCells cells(program, box, rest_lipschitz);
 //     cells.to_radii(points, count, values);      // a field with the Lipschitz constant 1
@@ -53,6 +53,9 @@ class SlopeCells {
   void to_radii(vm::Points points, std::size_t count, float* values) const;
   // Returns the same for one point, from its value in double.
   double radius(double value, glm::dvec3 point) const;
+  // Computes 1 / slope near points on the surface, by the level that tells most; 0 where there is no bound. Writes
+  // whole registers.
+  void inverse_slopes(vm::Points points, std::size_t count, float* out) const;
 
   // Size of the numbers that cancel in radii, scene units: the float error of a radius near a surface is
   // kDistanceError times (the size of the coordinates + cancellation()).

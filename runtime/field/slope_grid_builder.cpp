@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -12,17 +13,19 @@
 namespace fathom::runtime {
 namespace {
 
-// Maximum work: instructions bounded in all cells together, about a quarter of a second.
-constexpr std::uint64_t kMaxWork = 3'000'000;
+// Maximum work: instructions bounded in all cells together, about half a second. In a long formula, of which every
+// evaluation takes longer, as many as bound the formula in kCells cells.
+constexpr std::uint64_t kMaxWork = 3'000'000, kCells = 16'000;
 // A cell is divided where a value lets a ray step by less than this share of the cell.
 constexpr double kShortStep = 1;
 // A pruned part replaces the whole if it has at most this share of its choices.
-constexpr double kWorthPruning = 0.9;
+constexpr double kWorthPruning = 0.5;
 
 struct Cell {
   std::uint32_t x, y, z;
   compiler::Box box;
   std::shared_ptr<const vm::PrunedProgram> part;  // the part of the program that matters in an enclosing cell
+  float slope = 0;
   bool divides = false;
 };
 
@@ -30,16 +33,20 @@ class Builder {
  public:
   Builder(const vm::VerifiedProgram& program, const compiler::Box& box) {
     cells_.push_back({0, 0, 0, box, std::make_shared<const vm::PrunedProgram>(vm::whole(program))});
+    max_work_ = std::max(kMaxWork, kCells * program.instructions());
   }
 
   std::vector<SlopeLevel> run(int levels) {
     std::vector<SlopeLevel> result = {make_level(1)};
     bound(cells_[0], result[0], 1);
-    for (int level = 1; level < levels && work_ < kMaxWork; ++level) {
+    for (int level = 1; level < levels && work_ < max_work_; ++level) {
       SlopeLevel next = inherited(result.back(), 1u << level);
       std::vector<Cell> divided = std::exchange(cells_, {});
+      // If the work ends within a level, the steepest cells have been divided.
+      std::ranges::stable_sort(divided, std::greater(), &Cell::slope);
       for (Cell& cell : divided) {
-        if (cell.divides && work_ < kMaxWork) divide(cell, next, 1u << level);
+        if (cell.divides && work_ < max_work_) divide(cell, next, 1u << level);
+        cell.part.reset();
       }
       if (cells_.empty()) break;
       result.push_back(std::move(next));
@@ -88,7 +95,7 @@ class Builder {
     work_ += cell.part->sources.size();
     const std::size_t at = (cell.z * edge + cell.y) * edge + cell.x;
     const double slope = std::isfinite(found.float_error) ? found.lipschitz : std::numeric_limits<double>::infinity();
-    level.slopes[at] = std::min(level.slopes[at], rounded_up(slope));
+    level.slopes[at] = cell.slope = std::min(level.slopes[at], rounded_up(slope));
     const bool may_be_zero = found.value.lo <= 0 && found.value.hi >= 0;
     const bool known = std::isfinite(level.slopes[at]) && level.slopes[at] > 0;
     level.free[at] = !may_be_zero;
@@ -116,7 +123,7 @@ class Builder {
   vm::Workspace workspace_;
   vm::Specialiser specialiser_;
   std::vector<Cell> cells_;  // of the last level, those that are to be divided
-  std::uint64_t work_ = 0;
+  std::uint64_t work_ = 0, max_work_;
 };
 
 }  // namespace

@@ -52,12 +52,13 @@ CertifiedSearch::CertifiedSearch(const Field& field, glm::dvec3 origin, glm::dve
       origin_(origin),
       direction_(direction),
       side_(side),
-      max_slope_(field.lipschitz * glm::length(direction)),
+      speed_(glm::length(direction)),
+      max_slope_(field.lipschitz * speed_),
       interval_(interval),
       backtrack_(interval.hint - interval.begin),
       done_(false),
-      range_ratio_(std::isfinite(field.max_informative_length) ? kCostlyRangeRatio : kRangeRatio),
-      max_informative_(field.max_informative_length / glm::length(direction)),
+      range_ratio_(std::isfinite(field.max_informative_length) || field.cells ? kCostlyRangeRatio : kRangeRatio),
+      max_informative_(field.max_informative_length / speed_),
       interval_period_(field.far_levels.used() && !field.cells
                            ? std::max(kMinIntervalPeriod, field.distance->instructions() / kIntervalPeriodShare)
                            : 0),
@@ -82,12 +83,13 @@ void CertifiedSearch::supply(double f, std::uint64_t instructions, RealScratch& 
   // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0. A place without a value counts
   // as solid, so that a surface before it is found: hit() tells it from a surface.
   const double g = std::isfinite(f) ? (side_ < 0 ? -f : f) + rounding_ : -1;
+  radius_ = field_->cells && g > rounding_ ? field_->cells->radius(std::abs(f), point()) / speed_ : 0;
   switch (purpose_) {
     case Purpose::Begin:
       return begin(g);
     case Purpose::End:
-      current_.gb = g;
-      if (!pending_.empty() && pending_.back().a == current_.b) pending_.back().ga = g;
+      current_.gb = g, current_.rb = radius_;
+      if (!pending_.empty() && pending_.back().a == current_.b) pending_.back().ga = g, pending_.back().ra = radius_;
       return advance(scratch);
     case Purpose::Split:
       if (split(g)) advance(scratch);
@@ -106,7 +108,7 @@ void CertifiedSearch::begin(double g) {
     return request(from, Purpose::Begin);
   }
   if (g < 0) return hit(from, from);
-  current_ = {from, g, interval_.end, 0, max_slope_, max_slope_};
+  current_ = {from, g, interval_.end, 0, max_slope_, max_slope_, radius_};
   if (interval_.hint > from && interval_.hint < interval_.end) {
     current_.b = interval_.hint;
     // The far part's value at the hint is set with the near part's end, in supply().
@@ -118,12 +120,15 @@ void CertifiedSearch::begin(double g) {
 // Continues with the near part of the segment that was cut. A near part that is free is left behind, and the search
 // continues with the far part, which then is not stored. False if the search is done or looks for a root.
 bool CertifiedSearch::split(double g) {
-  const Segment nearer{current_.a, current_.ga, requested_t_, g, current_.fall, current_.rise};
+  const Segment nearer{current_.a, current_.ga, requested_t_, g, current_.fall, current_.rise, current_.ra, radius_};
   if (is_free(nearer, gap_of(nearer)) && !may_hide_end(nearer)) {
-    current_.a = requested_t_, current_.ga = g;
+    current_.a = requested_t_, current_.ga = g, current_.ra = radius_;
     return pass_segment(nearer);
   }
-  if (g >= 0) pending_.push_back({requested_t_, g, current_.b, current_.gb, current_.fall, current_.rise});
+  if (g >= 0) {
+    pending_.push_back(
+        {requested_t_, g, current_.b, current_.gb, current_.fall, current_.rise, radius_, current_.rb});
+  }
   current_ = nearer;
   return true;
 }
@@ -223,10 +228,13 @@ void CertifiedSearch::leave_solid(double level) {
 // balls of the near end and of the new sample should just touch if g keeps its slope, or just beyond a root that is
 // near.
 double CertifiedSearch::split_point(const Segment& s, const Gap& gap) const {
-  const double near = gap.lo - s.a, slope = std::clamp(slope_, -s.fall, kLargestSlope * s.rise);
+  // The slopes that the near end's ball allows for.
+  const double local = s.ra > 0 ? s.ga / s.ra : std::numeric_limits<double>::infinity();
+  const double fall = std::min(s.fall, local), rise = std::min(s.rise, local);
+  const double near = gap.lo - s.a, slope = std::clamp(slope_, -fall, kLargestSlope * rise);
   const double least = gap.lo + coarsened(kResolution, gap.lo);
   if (max_informative_ > range_ratio_ * near) return std::max(s.a + max_informative_, least);
-  double step = kReach * (near + s.ga / s.rise) / (1 - slope / s.rise);
+  double step = kReach * (near + s.ga / rise) / (1 - slope / rise);
   if (slope < 0) {
     const double open = 0.75 * coarsened(kRootResolution, gap.lo);
     step = std::max(step, std::min(kOvershoot * s.ga / -slope, near + open));
@@ -239,9 +247,9 @@ bool CertifiedSearch::is_free(const Segment& s, const Gap& gap) { return s.gb >=
 // Returns the part in which neither end's value and slope exclude g < 0. The gap is empty (lo > hi) if there is none.
 CertifiedSearch::Gap CertifiedSearch::gap_of(const Segment& s) {
   const double infinity = std::numeric_limits<double>::infinity();
-  const double lo = s.fall > 0 ? s.a + s.ga / s.fall : infinity;
+  const double lo = s.fall > 0 ? s.a + std::max(s.ga / s.fall, s.ra) : infinity;
   if (s.gb < 0) return {std::min(lo, s.b), s.b};
-  const double hi = s.rise > 0 ? s.b - s.gb / s.rise : -infinity;
+  const double hi = s.rise > 0 ? s.b - std::max(s.gb / s.rise, s.rb) : -infinity;
   return {lo, hi};
 }
 

@@ -56,6 +56,7 @@ class CertifiedSearch {
   struct Segment {
     double a, ga, b, gb;  // gb: NaN if not yet known
     double fall, rise;    // the slope of g is within [-fall, rise]
+    double ra = 0, rb = 0;  // g >= 0 within these lengths of the ends, by the field's bounds in cells
   };
   // The part of a segment in which its end values do not exclude g < 0.
   struct Gap {
@@ -97,6 +98,7 @@ class CertifiedSearch {
   const Field* field_ = nullptr;
   glm::dvec3 origin_{}, direction_{};
   int side_ = 0;
+  double speed_ = 0;      // |direction|
   double max_slope_ = 0;  // largest |dg/dt|
   RayInterval interval_{};
   double backtrack_ = 0;          // distance by which `begin` moves back next, if the hint was wrong
@@ -105,6 +107,7 @@ class CertifiedSearch {
   Bracket bracket_{};
   double slope_ = 0;     // slope of g over the last segment left behind
   double rounding_ = 0;  // rounding error of the field at the last point
+  double radius_ = 0;    // length about the last point within which g >= 0, by the field's bounds in cells
   // Last end of a segment left behind at which g was above the rounding level of 0, and g there.
   double above_ = 0, g_above_ = 0;
   // Point at which a solid's g came down to the rounding level of 0, and g there.

@@ -47,9 +47,19 @@ void evaluate_coarse_hits(const Field& field, std::span<const Hit> hits, Surface
   }
 }
 
-// Replaces the gradients of hits at which the field jumps by the normals of the surface.
+void set_inverse_slopes(const Field& field, std::size_t count, SurfaceRows& rows) {
+  if (!field.cells) {
+    std::fill_n(rows.inverse_slope, count, field.inv_lipschitz);
+    return;
+  }
+  field.cells->inverse_slopes({rows.position[0], rows.position[1], rows.position[2]}, count, rows.inverse_slope);
+}
+
+// Replaces the gradients of hits at which the field jumps by the normals of the surface. A field with a bound on its
+// slope around a hit does not jump there.
 void mend_jumps(const Field& field, std::span<const Hit> hits, SurfaceRows& rows, RealScratch& scratch) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (rows.inverse_slope[i] > 0) continue;
     const glm::dvec3 gradient(rows.gradient[0][i], rows.gradient[1][i], rows.gradient[2][i]);
     const float offset = std::max(2 * rows.width[i], least_offset(field, rows.size[i]));
     const auto normal = jump_normal(
@@ -74,7 +84,8 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
                                  rows.gradient[2], surface.data(),   rows.convex};
   field.evaluate_surface(places, hits.size(), values, workspace);
   evaluate_coarse_hits(field, hits, rows, surface, workspace);
-  if (field.cells) {
+  set_inverse_slopes(field, hits.size(), rows);
+  if (field.may_jump()) {
     RealScratch scratch;
     mend_jumps(field, hits, rows, scratch);
   }

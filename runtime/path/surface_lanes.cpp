@@ -46,6 +46,13 @@ HWY_INLINE FacingNormal facing_normal(Vectors gradient, Vectors wo, Floats side)
   return {select(exact, normal, select(turns, unit, wo)), exact, select(valid, length, number(0))};
 }
 
+// Returns the factor on the offset from a surface at which the field is flatter than its constant.
+HWY_INLINE Floats flatness_factor(Floats steepness, const Field& field) {
+  if (!field.cells) return number(1);
+  const Floats flatness = number(1) / max(steepness, number(1 / kMaxFlatness));
+  return select(steepness > number(0), flatness, number(1));
+}
+
 // Returns the distance from the hit within which rays that leave a convex solid meet nothing.
 HWY_INLINE Floats clear_distance(Floats convex, Floats size, Floats offset, const Field& field) {
   const Floats error = number(kDistanceError) * (max(size, abs(convex)) + number(field.cancellation));
@@ -61,13 +68,15 @@ void set_geometry(const Field& field, std::size_t count, SurfaceRows& rows) {
     const FacingNormal found = facing_normal(load(rows.gradient, i), load(rows.wo, i), side);
     const Floats least =
         number(kDistanceError) * (number(kOffsetErrors) * size + number(kMagnitudeErrors * field.cancellation));
-    const Floats offset = max(min(least, most), number(2) * Floats::load(rows.width + i));
+    const Floats steepness = min(found.length * Floats::load(rows.inverse_slope + i), number(1));
+    const Floats far_enough = min(least * flatness_factor(steepness, field), most);
+    const Floats offset = max(far_enough, number(2) * Floats::load(rows.width + i));
     const Floats clear = clear_distance(Floats::load(rows.convex + i), size, offset, field);
     found.normal.x.store(rows.normal[0] + i);
     found.normal.y.store(rows.normal[1] + i);
     found.normal.z.store(rows.normal[2] + i);
     offset.store(rows.offset + i);
-    min(found.length * number(field.inv_lipschitz), number(1)).store(rows.steepness + i);
+    steepness.store(rows.steepness + i);
     select(found.exact & (side > number(0)) & may_be_clear, clear, number(0)).store(rows.clear + i);
   }
 }

@@ -33,6 +33,19 @@ TEST_CASE("formula cells: what is proved as a whole needs no cells", "[compiler]
   CHECK(smooth.formula_box.empty());
 }
 
+// The constant of the heart holds at the corners of its box, where it is 1000 times as steep as at its surface.
+TEST_CASE("formula cells: a formula that is steep only far from its surface is proved, and has cells", "[compiler]") {
+  const std::string heart = R"_({"type": "expression", "half_size": [1.4, 1.4, 1.4],
+      "formula": "(x^2 + 2.25 * z^2 + y^2 - 1)^3 - x^2 * y^3 - 0.1125 * z^2 * y^3"})_";
+  const CompiledScene scene = with_objects(heart + "," + kGround);
+  CHECK(scene.certified);
+  CHECK(scene.formula_box.finite());
+  CHECK(scene.rest_lipschitz == 1);
+  CHECK(scene.cancellation < 1);
+  CHECK(with_objects(R"_({"type": "expression", "formula": "40 * (y - sin(x))", "half_size": [1, 1, 1]})_")
+            .formula_box.empty());
+}
+
 TEST_CASE("formula cells: neither fractals nor formulas that jump everywhere are proved in cells", "[compiler]") {
   const std::string everywhere = R"_({"type": "expression", "formula": "y - floor(4000 * x)"})_";
   CHECK(with_objects(everywhere).formula_box.empty());

@@ -151,6 +151,24 @@ void check(int rays) {
   }
 }
 
+// Regression: a ray that goes on in float after a search started outside, although it was within the solid, and hit
+// at once.
+TEST_CASE("jumps: a ray within a solid leaves it where the solid ends", "[march]") {
+  const auto scene = scene_of(R"_("objects": [{"type": "expression", "half_size": [2, 2, 2],
+      "formula": "y - 0.25 * floor(2 * x + 0.7 * z)"}])_");
+  const Field field = make_field(scene);
+  REQUIRE(field.cells);
+  // Along a step, less than the error of float below its top.
+  const std::vector<Ray> rays = {{{0.1, -1e-6, -0.1}, {0.33035, 0, -0.94386}}, {{-1, -1.9, 0}, {1, 0, 0.01}}};
+  for (const Ray& ray : rays) {
+    const RayHit found = march(field, std::span(&ray, 1)).ray_hits[0];
+    const RayHit exact = march(field, std::span(&ray, 1), {.method = Method::Certified}).ray_hits[0];
+    CHECK(exact.side == -1);
+    CHECK(found.side == exact.side);
+    CHECK(found.t == Approx(exact.t).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("jumps: rays hit formulas that jump where these change their sign", "[march]") {
   check(test::scaled_cases(120));
 }

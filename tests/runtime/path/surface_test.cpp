@@ -57,6 +57,7 @@ TEST_CASE("surface: a gradient that faces away is turned just far enough", "[run
     rows.side[i] = 1;
     rows.convex[i] = 0.5f;
     rows.width[i] = 1e-7f;
+    rows.inverse_slope[i] = 1;
   }
   set_surface_geometry(field, std::size(gradients), rows);
   const auto normal = [&](std::size_t i) {
