@@ -12,8 +12,8 @@
 
 #include <algorithm>
 
+#include "vm/number/discontinuity-inl.h"
 #include "vm/number/interval_elementary-inl.h"
-#include "vm/number/pole-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
@@ -33,7 +33,7 @@ struct Logarithm {
   // The f32 value is in [u exp(-below kUnit), u exp(above kUnit) + tiny]. Infinite `below`: the f32 value may be 0.
   // Infinite `above`: it may be infinite. If both are infinite, it may be NaN.
   double below, above, tiny;
-  Pole pole;  // of ln u
+  Discontinuity pole;  // of ln u
 
   Logarithm() {}
   Logarithm(const Logarithm& other) { *this = other; }
@@ -110,8 +110,9 @@ inline Interval log_of_sum(Interval a, Interval b) {
 
 // Returns the bounds of ln(u + w), given those of a = ln u, which tends to minus infinity at a pole, and of b = ln w.
 inline Logarithm log_sum_at_pole(const Logarithm& a, const Logarithm& b) {
-  if (b.pole.known() || !a.pole.tends_to(-1) || !(b.v.lo > kFarAbove && b.below + b.above < kUnbounded)) return {};
-  const Pole& p = a.pole;
+  if (b.pole.known() || !a.pole.tends_to(-kUnbounded) || !(b.v.lo > kFarAbove && b.below + b.above < kUnbounded))
+    return {};
+  const Discontinuity& p = a.pole;
   const double least = b.v.lo - b.below * kUnit;
   const double norm = bound(b.norm + weighted(p.middle, p.slope, p.slope_growth, p.reach.hi, least));
   const double error = weighted(p.middle, p.error, p.error_growth, p.reach.hi, least);

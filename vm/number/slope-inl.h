@@ -8,8 +8,8 @@
 // |grad(a + b)| <= |grad a| + |grad b|. A sum of squares s = |F|^2 also keeps J^T J of its components F: grad sqrt(s)
 // is J^T F / |F|, no longer than the largest singular value of J, whose square is at most the largest row sum of |J^T
 // J| (Gershgorin). So distances have norm 1 even where they are 0 and the quotient of intervals is unbounded.
-// A value made of exponentials keeps bounds of its logarithm (logarithm-inl.h), and a quotient whose divisor may be 0
-// keeps bounds near the pole (pole-inl.h).
+// A value made of exponentials keeps bounds of its logarithm (logarithm-inl.h), and a value that jumps or is
+// infinite somewhere those away from there (discontinuity-inl.h).
 //
 // Errors are in units of 2^-24: a rounding to f32 adds at most |result|. Running error analysis after Higham,
 // "Accuracy and Stability of Numerical Algorithms", 2002, section 3.3: the error of an operation is its operands'
@@ -65,7 +65,7 @@ struct Slope {
   bool nonnegative;  // true if neither the exact nor the f32 value can be negative
   Squares squares = {};
   Logarithm logarithm = {};
-  Pole pole = {};
+  Discontinuity discontinuity = {};
 
   double error() const { return std::max(below, above); }  // bound on |f32 value - exact value|, in kUnit
 
@@ -146,23 +146,27 @@ inline Logarithm combined(const Slope& a, const Slope& b, const Combine& combine
   return of_a.known && of_b.known ? combine(of_a, of_b) : Logarithm();
 }
 
-// Returns the range of the exact and the f32 values.
-inline Interval exact_or_seen(const Slope& a) { return hull(a.v, seen(a)); }
-inline Pole sum_pole(const Slope& a, const Slope& b) { return shifted(a.pole, exact_or_seen(b), b.norm, b.error()); }
-inline Pole product_pole(const Slope& a, const Slope& b) {
-  return b.norm == 0 ? scaled(a.pole, exact_or_seen(b), b.error()) : Pole();
+inline Continuous continuous(const Slope& a) {
+  return {a.v, hull(a.v, seen(a)), a.dx, a.dy, a.dz, a.norm, a.error()};
 }
-// Returns the pole of the larger value.
-inline Pole larger_pole(const Slope& a, const Pole& pole_a, const Slope& b, const Pole& pole_b, int sign) {
-  if (pole_a.known() && pole_b.known()) return maximum(pole_a, pole_b);
-  const Slope& other = pole_a.known() ? b : a;
-  const Interval range = exact_or_seen(other);
-  return maximum(pole_a.known() ? pole_a : pole_b, sign < 0 ? -range : range, other.norm, other.error());
+// Returns -a, as far as operator-() of discontinuities needs it.
+inline Continuous negated(Continuous a) { return {-a.exact, -a.range, -a.dx, -a.dy, -a.dz, a.norm, a.error}; }
+// True if exactly one of two operands has a discontinuity.
+inline bool one_breaks(const Slope& a, const Slope& b) { return a.discontinuity.known() != b.discontinuity.known(); }
+inline Discontinuity larger(const Slope& a, const Slope& b) {
+  const Discontinuity &of_a = a.discontinuity, &of_b = b.discontinuity;
+  if (of_a.known() && of_b.known()) return maximum(of_a, of_b);
+  return of_a.known() ? maximum(of_a, continuous(b)) : maximum(of_b, continuous(a));
+}
+inline Discontinuity smaller(const Slope& a, const Slope& b) {
+  const Discontinuity &of_a = a.discontinuity, &of_b = b.discontinuity;
+  if (of_a.known() && of_b.known()) return -maximum(-of_a, -of_b);
+  return of_a.known() ? -maximum(-of_a, negated(continuous(b))) : -maximum(-of_b, negated(continuous(a)));
 }
 
 inline Slope operator-(const Slope& a) {
   Slope r = make_slope(-a.v, -a.dx, -a.dy, -a.dz, a.norm, a.above, a.below);
-  r.pole = -a.pole;
+  r.discontinuity = -a.discontinuity;
   return r;
 }
 inline Slope operator+(const Slope& a, const Slope& b) {
@@ -178,13 +182,19 @@ inline Slope operator+(const Slope& a, const Slope& b) {
     r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
   r.logarithm = combined(a, b, log_sum);
-  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? sum_pole(a, b) : sum_pole(b, a);
+  if (one_breaks(a, b)) {
+    r.discontinuity =
+        a.discontinuity.known() ? shifted(a.discontinuity, continuous(b)) : shifted(b.discontinuity, continuous(a));
+  }
   return r;
 }
 inline Slope operator-(const Slope& a, const Slope& b) {
   Slope r = make_slope(a.v - b.v, a.dx - b.dx, a.dy - b.dy, a.dz - b.dz, a.norm + b.norm,
                        rounded_below(a.v - b.v, a.below + b.above), rounded_above(a.v - b.v, a.above + b.below));
-  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? sum_pole(a, -b) : sum_pole(-b, a);
+  if (one_breaks(a, b)) {
+    r.discontinuity = a.discontinuity.known() ? shifted(a.discontinuity, negated(continuous(b)))
+                                              : shifted(-b.discontinuity, continuous(a));
+  }
   return r;
 }
 // Returns a b, given the errors of f32.
@@ -194,7 +204,10 @@ inline Slope product(const Slope& a, const Slope& b, double below, double above)
                        times(ma, b.norm) + times(mb, a.norm), below, above);
   r.nonnegative = a.nonnegative && b.nonnegative;
   r.logarithm = combined(a, b, log_product);
-  if (a.pole.known() != b.pole.known()) r.pole = a.pole.known() ? product_pole(a, b) : product_pole(b, a);
+  if (one_breaks(a, b)) {
+    r.discontinuity =
+        a.discontinuity.known() ? scaled(a.discontinuity, continuous(b)) : scaled(b.discontinuity, continuous(a));
+  }
   return r;
 }
 // Returns a b where a's f32 value A may be infinite. For an f32 factor B > 0, A >= a - below makes A B at least
@@ -220,7 +233,7 @@ inline Slope operator/(const Slope& a, const Slope& b) {
   if (contains(sb, 0)) {
     Slope r = jump(whole_line(), whole_line());
     r.logarithm = combined(a, b, log_quotient);
-    r.pole = pole_of_quotient(exact_or_seen(a), a.norm, a.error(), b.norm, b.error());
+    r.discontinuity = pole_of_quotient(continuous(a), b.norm, b.error());
     return r;
   }
   const Interval q = a.v / b.v, inverse = Interval{1, 1} / b.v;
@@ -264,7 +277,7 @@ inline Slope min(const Slope& a, const Slope& b) {
   const double most =
       maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((std::min(seen_a.hi, seen_b.hi) - v.lo) / kUnit);
   Slope r = either(a, b, v, std::max(a.below, b.below), std::min(std::max(a.above, b.above), most));
-  if (a.pole.known() || b.pole.known()) r.pole = -larger_pole(a, -a.pole, b, -b.pole, -1);
+  if (a.discontinuity.known() || b.discontinuity.known()) r.discontinuity = smaller(a, b);
   return r;
 }
 inline Slope max(const Slope& a, const Slope& b) {
@@ -275,21 +288,36 @@ inline Slope max(const Slope& a, const Slope& b) {
       maybe_nan(a) || maybe_nan(b) ? kUnbounded : bound((v.hi - std::max(seen_a.lo, seen_b.lo)) / kUnit);
   Slope r = either(a, b, v, std::min(std::max(a.below, b.below), most), std::max(a.above, b.above));
   r.nonnegative = a.nonnegative || b.nonnegative;
-  if (a.pole.known() || b.pole.known()) r.pole = larger_pole(a, a.pole, b, b.pole, 1);
+  if (a.discontinuity.known() || b.discontinuity.known()) r.discontinuity = larger(a, b);
   return r;
 }
+// True if a jumps and f(a) does not.
+template <class Function>
+inline bool closes_jump(const Slope& a, const Function& f) {
+  Discontinuity d = a.discontinuity;
+  if (!d.is_known_jump()) return false;
+  for (Interval& limit : d.limits) limit = f(limit);
+  return d.closes();
+}
+// Returns the bounds of a away from its jumps.
+inline Slope without_jump(const Slope& a) {
+  const Discontinuity& d = a.discontinuity;
+  return make_slope(a.v, d.dx, d.dy, d.dz, d.slope, d.error);
+}
 inline Slope abs(const Slope& a) {
+  if (closes_jump(a, [](Interval limit) { return abs(limit); })) return abs(without_jump(a));
   const Interval s = seen(a);
   const Interval slope = s.lo >= 0 ? Interval{1, 1} : s.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1};
   Slope r = chain(a, abs(a.v), slope, s.lo >= 0 ? a.below : a.error(), s.lo >= 0 ? a.above : a.error());
   r.nonnegative = true;
-  if (a.pole.known()) {
-    r.pole = maximum(a.pole, -a.pole);
-    r.pole.reach = abs(a.pole.reach);
+  if (a.discontinuity.is_known_pole()) {
+    r.discontinuity = maximum(a.discontinuity, -a.discontinuity);
+    r.discontinuity.reach = abs(a.discontinuity.reach);
   }
   return r;
 }
 inline Slope sqr(const Slope& a) {
+  if (closes_jump(a, [](Interval limit) { return sqr(limit); })) return sqr(without_jump(a));
   const Interval seen_a = seen(a);
   const double error = times(magnitude(seen_a) + magnitude(a.v), a.error()) + rounding(magnitude(sqr(seen_a)));
   Slope r = chain(a, sqr(a.v), a.v + a.v, error);

@@ -62,20 +62,27 @@ inline Slope atan(const Slope& a) {
 inline Slope atan2(const Slope& y, const Slope& x) {
   const Interval sy = seen(y), sx = seen(x);
   const Interval angle = atan2(sy, sx), square = sqr(y.v) + sqr(x.v), seen_square = sqr(sy) + sqr(sx);
-  if (contains(sy, 0) && sx.lo <= 0) return jump(angle, angle);  // the branch cut
+  const bool jumps = contains(sy, 0) && sx.lo <= 0;  // the branch cut
+  if (jumps && !(sx.hi < 0)) return jump(angle, angle);
   const Interval u = x.v / square, w = y.v / square;
   const double steepest = 1 / std::sqrt(seen_square.lo);
-  return make_slope(atan2(y.v, x.v), u * y.dx - w * x.dx, u * y.dy - w * x.dy, u * y.dz - w * x.dz,
-                    (y.norm + x.norm) / std::sqrt(square.lo),
-                    (y.error() + x.error()) * steepest + rounding(kKernelUnits * magnitude(angle)));
+  const Slope r = make_slope(atan2(y.v, x.v), u * y.dx - w * x.dx, u * y.dy - w * x.dy, u * y.dz - w * x.dz,
+                             (y.norm + x.norm) / std::sqrt(square.lo),
+                             (y.error() + x.error()) * steepest + rounding(kKernelUnits * magnitude(angle)));
+  if (!jumps) return r;
+  Slope broken = jump(angle, angle);
+  broken.discontinuity = jump_of_angle(continuous(r));
+  return broken;
 }
 inline Slope exp(const Slope& a) {
   Slope r = smooth(a, exp(a.v), exp(a.v), exp(seen(a)), exp(seen(a)));
   r.nonnegative = true;
   constexpr double kOwn = kKernelUnits * kRoundedLogarithm;
   r.logarithm = make_logarithm(a.v, a.dx, a.dy, a.dz, a.norm, a.below + kOwn, a.above + kOwn, 0);
-  r.logarithm.pole = a.pole;
-  if (a.pole.known()) r.logarithm.pole.error += kOwn;
+  if (a.discontinuity.is_known_pole()) {
+    r.logarithm.pole = a.discontinuity;
+    r.logarithm.pole.error += kOwn;
+  }
   return r;
 }
 // Returns the logarithm of a value by the bounds that it has kept of it.
@@ -147,14 +154,28 @@ inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logica
 inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
 inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
 
+// True if a jumps by a multiple of b.
+inline bool jumps_by_multiple(const Slope& a, const Slope& b) {
+  if (!a.discontinuity.is_known_jump() || b.norm > 0) return false;
+  constexpr double kRoundings = 0x1p-48;
+  const Interval turns = (a.discontinuity.limits[1] - a.discontinuity.limits[0]) / b.v;
+  const double nearest = round_nearest(Real{turns.lo}).v;
+  return std::max(std::fabs(turns.lo - nearest), std::fabs(turns.hi - nearest)) <= kRoundings * std::fabs(nearest);
+}
 inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());
+  if (jumps_by_multiple(a, b)) return mod(without_jump(a), b);
   const Slope turns = floor(a / b);
   if (turns.norm == 0) return a - b * turns;
   // In f32 the rounding of the quotient and the product can leave the period.
   const Interval sa = seen(a), sb = seen(b);
   const double slack = 4 * kUnit * (magnitude(sa) + magnitude(sb));
-  return jump(mod(a.v, b.v), {std::min(0.0, sb.lo) - slack, std::max(0.0, sb.hi) + slack});
+  Slope r = jump(mod(a.v, b.v), {std::min(0.0, sb.lo) - slack, std::max(0.0, sb.hi) + slack});
+  if (b.norm == 0) {
+    const double error = slack / kUnit + times(magnitude(turns.v) + 1, b.error());
+    r.discontinuity = jumps_of_modulus(continuous(a), b.v, error);
+  }
+  return r;
 }
 inline Slope logical_and(const Slope& a, const Slope& b) {
   if (!contains(seen(a), 0)) return b;

@@ -47,7 +47,10 @@ NodeId make_formula(Graph& graph, const Formula& formula, const std::string& nam
     CHECK(row != nullptr, "formulas are of the machine's functions");
     operands.clear();
     for (const std::uint32_t argument : node.arguments) operands.push_back(made[argument]);
-    made.push_back(graph.add(row->kind, {}, operands, origin));
+    // a * a is a^2, of whose range and slope more is known than of those of a product.
+    Kind kind = row->kind;
+    if (kind == Kind::Multiply && operands[0] == operands[1]) kind = Kind::Square, operands.pop_back();
+    made.push_back(graph.add(kind, {}, operands, origin));
   }
   return made.back();
 }

@@ -11,7 +11,7 @@ namespace fathom::cli {
 
 // Version of the renderer's output. Films of different versions belong to different renders. Raise the number with
 // every change to the bits of an image: tests/runtime/renderer_bits_test.cpp fails until then.
-inline constexpr int kRendererBits = 11;
+inline constexpr int kRendererBits = 12;
 
 runtime::Identity render_identity(const compiler::CompiledScene& scene, const runtime::Settings& settings,
                                   const runtime::RenderOptions& options);

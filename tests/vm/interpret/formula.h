@@ -99,6 +99,32 @@ inline void append_pole(Random& random, std::vector<Step>& steps) {
   steps.push_back({Opcode::Scale, {1 / k}});
 }
 
+// Appends a random function of repeated cells or sectors, most of which are continuous from one to the next.
+inline void append_cells(Random& random, std::vector<Step>& steps) {
+  using vm::Opcode;
+  static const double kPeriods[] = {1, 0.25, 0.9, 0.3, 2};
+  const bool sectors = random.chance(0.3);
+  const double period = sectors ? 2 * M_PI / (1 + random.below(12)) : kPeriods[random.below(5)];
+  steps.push_back({Opcode::X});
+  steps.push_back({random.chance(0.5) ? Opcode::Y : Opcode::Z});
+  if (sectors) {
+    steps.push_back({Opcode::Atan2});
+  } else {
+    steps.push_back({Opcode::Scale, {random.below(3) * 0.4}});
+    steps.push_back({Opcode::Add});
+    steps.push_back({Opcode::Scale, {random.chance(0.2) ? 40 : random.uniform(-2, 2)}});
+  }
+  steps.push_back({Opcode::Constant, {period}});
+  steps.push_back({random.chance(0.8) ? Opcode::Modulo : Opcode::ModuloEuclid});
+  steps.push_back({Opcode::Offset, {random.chance(0.8) ? period / 2 : 0.4 * period}});
+  if (random.chance(0.3)) steps.push_back({Opcode::Scale, {random.uniform(-2, 2)}});
+  steps.push_back({random.chance(0.5) ? Opcode::Abs : Opcode::Square});
+  steps.push_back({random.chance(0.5) ? Opcode::Y : Opcode::Z});
+  if (random.chance(0.5)) steps.push_back({Opcode::Square});
+  steps.push_back({random.chance(0.5) ? Opcode::Add : random.chance(0.5) ? Opcode::Max : Opcode::Minus});
+  if (random.chance(0.4)) steps.push_back({Opcode::Sqrt});
+}
+
 // Appends a random tree of smooth unions by exponentials, their kin and hard unions, over distances from axes and
 // planes.
 inline void append_exponentials(Random& random, int size, std::vector<Step>& steps) {

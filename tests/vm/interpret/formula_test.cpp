@@ -202,6 +202,40 @@ TEST_CASE("bounds of smooth unions near poles hold", "[formula][slope]") {
   CHECK(counts.lipschitz > counts.boxes * 2 / 3);
 }
 
+TEST_CASE("bounds of repeated cells and sectors hold", "[formula][slope]") {
+  BoundCounts counts;
+  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
+    Random random(seed);
+    std::vector<Step> steps;
+    append_cells(random, steps);
+    check_slope_bounds(steps, seed, counts);
+  }
+  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
+                        << " boxes have a finite slope and float error");
+  CHECK(counts.lipschitz > counts.boxes / 2);
+}
+
+TEST_CASE("repeated cells have a bound if they are equal on both sides of their border", "[formula][slope]") {
+  vm::Workspace workspace;
+  const auto bound = [&](double period, double shift, Opcode even) {
+    return vm::evaluate_slope(formula({{Opcode::X},
+                                       {Opcode::Constant, {period}},
+                                       {Opcode::Modulo},
+                                       {Opcode::Offset, {shift}},
+                                       {even},
+                                       {Opcode::Y},
+                                       {Opcode::Square},
+                                       {Opcode::Add},
+                                       {Opcode::Sqrt}}),
+                              dvec3(-3), dvec3(3), workspace);
+  };
+  CHECK(bound(0.9, 0.45, Opcode::Square).lipschitz <= 1 + 1e-9);
+  CHECK(bound(0.9, 0.45, Opcode::Square).float_error < 1e-2);  // the root at 0
+  CHECK(!std::isfinite(bound(0.9, 0.4, Opcode::Square).lipschitz));
+  CHECK(!std::isfinite(bound(0.9, 0.45 + 1e-9, Opcode::Square).lipschitz));
+  CHECK(!std::isfinite(bound(0.9, 0.45, Opcode::Sin).lipschitz));
+}
+
 // The pole of 0.1 / x is a wall on both sides of which the quotient's part of the union vanishes.
 TEST_CASE("a smooth union has a bound where an operand is infinite, unless only on one side", "[formula][slope]") {
   vm::Workspace workspace;
