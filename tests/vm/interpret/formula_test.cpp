@@ -72,6 +72,21 @@ void check_slope_bounds(const std::vector<Step>& steps, int seed, BoundCounts& c
   }
 }
 
+// Checks the bounds of formulas that `append` makes.
+template <class Append>
+BoundCounts check_random_bounds(const Append& append) {
+  BoundCounts counts;
+  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
+    Random random(seed);
+    std::vector<Step> steps;
+    append(random, steps);
+    check_slope_bounds(steps, seed, counts);
+  }
+  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
+                        << " boxes have a finite slope and float error");
+  return counts;
+}
+
 }  // namespace
 
 TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa]") {
@@ -176,42 +191,19 @@ TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]")
 
 // The exponentials of such formulas underflow and overflow in float.
 TEST_CASE("bounds of sums of exponentials hold", "[formula][slope]") {
-  BoundCounts counts;
-  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
-    Random random(seed);
-    std::vector<Step> steps;
-    append_exponentials(random, 1 + random.below(4), steps);
-    check_slope_bounds(steps, seed, counts);
-  }
-  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
-                        << " boxes have a finite slope and float error");
+  const BoundCounts counts = check_random_bounds(
+      [](Random& random, std::vector<Step>& steps) { append_exponentials(random, 1 + random.below(4), steps); });
   CHECK(counts.lipschitz > counts.boxes * 0.99);  // without one: exponentials that leave the range of double
   CHECK(counts.error > counts.boxes * 2 / 3);
 }
 
 TEST_CASE("bounds of smooth unions near poles hold", "[formula][slope]") {
-  BoundCounts counts;
-  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
-    Random random(seed);
-    std::vector<Step> steps;
-    append_pole(random, steps);
-    check_slope_bounds(steps, seed, counts);
-  }
-  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
-                        << " boxes have a finite slope and float error");
+  const BoundCounts counts = check_random_bounds(append_pole);
   CHECK(counts.lipschitz > counts.boxes * 2 / 3);
 }
 
 TEST_CASE("bounds of repeated cells and sectors hold", "[formula][slope]") {
-  BoundCounts counts;
-  for (int seed = 0; seed < scaled_cases(10000); ++seed) {
-    Random random(seed);
-    std::vector<Step> steps;
-    append_cells(random, steps);
-    check_slope_bounds(steps, seed, counts);
-  }
-  WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
-                        << " boxes have a finite slope and float error");
+  const BoundCounts counts = check_random_bounds(append_cells);
   CHECK(counts.lipschitz > counts.boxes / 2);
 }
 
