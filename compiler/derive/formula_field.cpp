@@ -41,8 +41,13 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
   return maker.make(Kind::Bounded, params, children, origin);
 }
 
-// Estimates the Lipschitz constant of a formula without a proved constant.
-double estimated(const FormulaBound& bound) { return std::max(1.0, 1.5 * bound.seen); }
+// Estimates the Lipschitz constant of a formula without a proved constant. The slopes that the search has seen next
+// to a place of infinite slope say how near the search came.
+double estimated(const FormulaBound& bound) {
+  constexpr double kMost = 64;  // of the slope near the surface
+  const double seen = bound.at_surface > 0 ? std::min(bound.seen, kMost * bound.at_surface) : bound.seen;
+  return std::max(1.0, 1.5 * seen);
+}
 
 struct DisplacedBound {
   Box box;

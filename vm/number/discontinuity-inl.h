@@ -40,8 +40,9 @@ struct Discontinuity {
   // Number of the operation that is not continuous, in the order of evaluation; 0: there is none. Values with the
   // same number are not continuous at the same places, where some operand x passes a value.
   std::uint64_t operation = 0;
-  // Limits as x rises to that value, and as x falls to it; points, except for rounding. Infinite at a pole.
+  // Limits as x rises to that value, and as x falls to it: ranges over all such places. Infinite at a pole.
   Interval limits[2];
+  Interval step;        // of a jump: the second limit less the first, anywhere
   Interval reach;       // range of the exact values and of those on the way to the f32 values
   Interval dx, dy, dz;  // ranges of the partial derivatives
   // At a value v, the length of the gradient is at most slope + slope_growth (v - m)^2, and the rate at which the
@@ -55,7 +56,7 @@ struct Discontinuity {
   Discontinuity& operator=(const Discontinuity& other) {
     operation = other.operation;
     if (operation == 0) return *this;
-    limits[0] = other.limits[0], limits[1] = other.limits[1], reach = other.reach;
+    limits[0] = other.limits[0], limits[1] = other.limits[1], step = other.step, reach = other.reach;
     dx = other.dx, dy = other.dy, dz = other.dz, middle = other.middle;
     slope = other.slope, slope_growth = other.slope_growth;
     error = other.error, error_growth = other.error_growth;
@@ -70,10 +71,17 @@ struct Discontinuity {
   bool tends_to(double end) const { return limits[0].lo == end && limits[1].lo == end; }
   // True if the limits are equal, except for the rounding of doubles.
   bool closes() const {
-    constexpr double kRoundings = 0x1p-48;
     const double apart = std::max(limits[0].hi - limits[1].lo, limits[1].hi - limits[0].lo);
     return apart <= kRoundings * (magnitude(limits[0]) + magnitude(limits[1]));
   }
+  // True if the step of a jump is a multiple of a period, except for the rounding of doubles.
+  bool is_step_multiple_of(Interval period) const {
+    const Interval turns = step / period;
+    const double whole = round_nearest(Real{turns.lo}).v;
+    return std::max(std::fabs(turns.lo - whole), std::fabs(turns.hi - whole)) <= kRoundings * std::fabs(whole);
+  }
+
+  static constexpr double kRoundings = 0x1p-48;
 };
 
 // Returns the number of a new operation.
@@ -105,7 +113,7 @@ inline Discontinuity pole_of_quotient(const Continuous& a, double norm_x, double
       a.range.lo > 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
   d.limits[0] = {-end, -end}, d.limits[1] = {end, end};
   d.middle = {0, 0};
-  d.reach = d.dx = d.dy = d.dz = whole_line();
+  d.step = d.reach = d.dx = d.dy = d.dz = whole_line();
   // The gradient is (q grad a - q^2 grad x) / a, for q = a / x.
   d.slope = 0.5 * a.norm / least;
   d.slope_growth = (0.5 * a.norm + norm_x) / least;
@@ -120,6 +128,7 @@ inline Discontinuity jump_of_angle(const Continuous& angle) {
   Discontinuity d;
   d.operation = number_of_operation();
   d.limits[0] = outward(-kPi, -kPi), d.limits[1] = outward(kPi, kPi);
+  d.step = outward(2 * kPi, 2 * kPi);
   d.middle = {0, 0};
   d.reach = angle.range;
   d.dx = angle.dx, d.dy = angle.dy, d.dz = angle.dz;
@@ -136,6 +145,7 @@ inline Discontinuity jumps_of_modulus(const Continuous& a, Interval b, double er
   Discontinuity d;
   d.operation = number_of_operation();
   d.limits[0] = b, d.limits[1] = {0, 0};
+  d.step = -b;
   d.middle = {0, 0};
   d.reach = outward(-error * 0x1p-24, b.hi + error * 0x1p-24);
   d.dx = a.dx, d.dy = a.dy, d.dz = a.dz;
@@ -147,13 +157,14 @@ inline Discontinuity jumps_of_modulus(const Continuous& a, Interval b, double er
 inline Discontinuity operator-(Discontinuity d) {
   if (!d.known()) return d;
   for (Interval& limit : d.limits) limit = -limit;
+  d.step = -d.step;
   d.middle = -d.middle, d.reach = -d.reach;
   d.dx = -d.dx, d.dy = -d.dy, d.dz = -d.dz;
   return d;
 }
-// Returns the discontinuity of v + u. A jump has limits only if u is constant.
+// Returns the discontinuity of v + u.
 inline Discontinuity shifted(Discontinuity d, const Continuous& u) {
-  if (!d.known() || !u.bounded() || (!d.is_pole() && u.norm > 0)) return {};
+  if (!d.known() || !u.bounded()) return {};
   if (!d.is_pole()) {
     for (Interval& limit : d.limits) limit = limit + u.exact;
   }
@@ -169,6 +180,7 @@ inline Discontinuity scaled(Discontinuity d, const Continuous& k) {
   if (k.range.hi < 0) d = -d;
   const Interval size = abs(k.range);
   for (Interval& limit : d.limits) limit = limit * abs(k.exact);
+  d.step = d.step * abs(k.exact);
   d.middle = d.middle * size, d.reach = d.reach * size;
   d.dx = d.dx * size, d.dy = d.dy * size, d.dz = d.dz * size;
   d.slope *= size.hi, d.error *= size.hi;
@@ -187,6 +199,7 @@ inline Discontinuity maximum(Discontinuity d, const Continuous& u) {
 inline Discontinuity maximum(Discontinuity d, const Discontinuity& other) {
   if (!d.known() || d.operation != other.operation) return {};
   for (int side = 0; side < 2; ++side) d.limits[side] = max(d.limits[side], other.limits[side]);
+  d.step = whole_line();
   d.middle = hull(d.middle, other.middle), d.reach = max(d.reach, other.reach);
   d.dx = hull(d.dx, other.dx), d.dy = hull(d.dy, other.dy), d.dz = hull(d.dz, other.dz);
   d.slope = std::max(d.slope, other.slope), d.slope_growth = std::max(d.slope_growth, other.slope_growth);

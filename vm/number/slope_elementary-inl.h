@@ -23,13 +23,19 @@ inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_sl
 // Error of sine and cosine beyond kAngleLimit: both the exact and the f32 value are in [-1, 1], but the sine of an
 // overflowed angle is NaN.
 inline double wave_error(Interval s) { return magnitude(s) < 3.4e38 ? 2 / kUnit : kUnbounded; }
+inline bool jumps_by_multiple(const Slope& a, Interval period) {
+  return a.discontinuity.is_known_jump() && a.discontinuity.is_step_multiple_of(period);
+}
+inline Interval whole_turn() { return outward(2 * kPi, 2 * kPi); }
 inline Slope sin(const Slope& a) {
+  if (jumps_by_multiple(a, whole_turn())) return sin(without_jump(a));
   const Interval s = seen(a);
   Slope r = smooth(a, sin(a.v), cos(a.v), cos(s), sin(s));
   if (!(magnitude(s) <= kAngleLimit)) r.below = r.above = wave_error(s);
   return r;
 }
 inline Slope cos(const Slope& a) {
+  if (jumps_by_multiple(a, whole_turn())) return cos(without_jump(a));
   const Interval s = seen(a);
   Slope r = smooth(a, cos(a.v), -sin(a.v), sin(s), cos(s));
   if (!(magnitude(s) <= kAngleLimit)) r.below = r.above = wave_error(s);
@@ -154,17 +160,9 @@ inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logica
 inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
 inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
 
-// True if a jumps by a multiple of b.
-inline bool jumps_by_multiple(const Slope& a, const Slope& b) {
-  if (!a.discontinuity.is_known_jump() || b.norm > 0) return false;
-  constexpr double kRoundings = 0x1p-48;
-  const Interval turns = (a.discontinuity.limits[1] - a.discontinuity.limits[0]) / b.v;
-  const double nearest = round_nearest(Real{turns.lo}).v;
-  return std::max(std::fabs(turns.lo - nearest), std::fabs(turns.hi - nearest)) <= kRoundings * std::fabs(nearest);
-}
 inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());
-  if (jumps_by_multiple(a, b)) return mod(without_jump(a), b);
+  if (b.norm == 0 && jumps_by_multiple(a, b.v)) return mod(without_jump(a), b);
   const Slope turns = floor(a / b);
   if (turns.norm == 0) return a - b * turns;
   // In f32 the rounding of the quotient and the product can leave the period.

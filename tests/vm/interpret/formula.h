@@ -114,6 +114,13 @@ inline void append_cells(Random& random, std::vector<Step>& steps) {
     steps.push_back({Opcode::Add});
     steps.push_back({Opcode::Scale, {random.chance(0.2) ? 40 : random.uniform(-2, 2)}});
   }
+  if (sectors && random.chance(0.3)) {
+    steps.push_back({Opcode::Scale, {1.0 + random.below(9)}});
+    steps.push_back({Opcode::Z});
+    steps.push_back({Opcode::Add});
+    steps.push_back({random.chance(0.5) ? Opcode::Sin : Opcode::Cos});
+    return;
+  }
   steps.push_back({Opcode::Constant, {period}});
   steps.push_back({random.chance(0.8) ? Opcode::Modulo : Opcode::ModuloEuclid});
   steps.push_back({Opcode::Offset, {random.chance(0.8) ? period / 2 : 0.4 * period}});
