@@ -246,12 +246,12 @@ void warn_of_cancellation(const Scene& scene, const std::vector<NodeFacts>& know
   if (error <= most || cancellation <= 1) return;
   NodeId worst = scene.root;
   for (NodeId child : scene.graph.children(scene.root)) {
-    if (known[child].cancellation == known[scene.root].cancellation) worst = child;
+    if (known[child].cancellation == cancellation) worst = child;
   }
-  diagnostics.warning("W0403", scene.graph.origin(worst).span,
-                      fmt::format("numbers around {:.3g} cancel here: in float its surface is known to {:.1g}",
-                                  known[worst].cancellation, error),
-                      "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
+  diagnostics.warning(
+      "W0403", scene.graph.origin(worst).span,
+      fmt::format("numbers around {:.3g} cancel here: in float its surface is known to {:.1g}", cancellation, error),
+      "", {"use a plane for a wide floor; keep large moves from cancelling; blend and round less"});
 }
 
 // Warns when the scene's contents and the camera lie so close together that double, which decides what float cannot,

@@ -61,7 +61,7 @@ class Bisection {
       const Cell steepest = cells_.top();
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
-    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0, 0};
+    FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0};
     double smallest = kInfinity;
     for (; !cells_.empty(); cells_.pop()) {
       const vm::SlopeBound& b = cells_.top().bound;
@@ -109,7 +109,7 @@ class Bisection {
     if (std::isfinite(slope)) seen_ = std::max(seen_, slope);
   }
 
-  // Specialises the part for the cell that look() has just bounded.
+  // Specialises the part for the cell that add() has just bounded.
   std::shared_ptr<const vm::PrunedProgram> cut(const std::shared_ptr<const vm::PrunedProgram>& part) {
     if (part->choices == 0) return part;
     specialiser_.resolve(-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity());
@@ -150,10 +150,8 @@ class Bisection {
   double seen_ = 0;
 };
 
-// Returns FormulaBound::at_surface: the third quartile of the slopes at the points nearest to the surface, by their
-// values and slopes, of some that are spread evenly over the box. Points are multiples of irrational numbers,
-// modulo 1.
-double slope_at_surface(const vm::VerifiedProgram& program, const Box& box) {
+// Points are multiples of irrational numbers, modulo 1.
+double slope_of_nearest(const vm::VerifiedProgram& program, const Box& box) {
   constexpr std::ptrdiff_t kPoints = 256, kNearest = 16;
   constexpr glm::dvec3 kSteps(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
   struct Sample {
@@ -204,10 +202,13 @@ std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
 
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
-  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, 0, kInfinity, 1};
-  FormulaBound bound = Bisection(*program, box, coordinates_of(graph, formula)).run();
-  if (box.finite()) bound.at_surface = slope_at_surface(*program, box);
-  return bound;
+  if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity, 1};
+  return Bisection(*program, box, coordinates_of(graph, formula)).run();
+}
+
+double slope_at_surface(const Graph& graph, NodeId formula, const Box& box) {
+  const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
+  return program && box.finite() ? slope_of_nearest(*program, box) : 0;
 }
 
 NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {

@@ -14,9 +14,6 @@ struct FormulaBound {
   double least, most;  // of the values
   double lipschitz;    // of the formula within the box; infinite if the search found no bound
   double seen;         // the steepest gradient that the search evaluated
-  // Length of the gradient near where the formula is 0: three quarters of some points have less. 0 in an infinite
-  // box.
-  double at_surface;
   double float_error;  // of an evaluation in float, scene units; may be infinite
   double unbounded_share = 0;  // of the box: of the cells without a bound that the search ended with
   Box unbounded = {};          // the smallest cell without a bound that the search met; empty if there is none
@@ -24,6 +21,10 @@ struct FormulaBound {
 
 // `box` may have infinite sides. `formula` is a node of numbers.
 FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box);
+
+// Returns the length of the gradient near where the formula is 0: the third quartile at the nearest, by their values
+// and slopes, of some points that are spread evenly over the box. 0 in an infinite box.
+double slope_at_surface(const Graph& graph, NodeId formula, const Box& box);
 
 // Returns the operation that leaves a formula without a bound: in the smallest cell without a bound, each operand of
 // the operation has a bound. In a formula of more than some thousands of operations the result may be one further up.

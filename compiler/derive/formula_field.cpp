@@ -15,12 +15,12 @@ constexpr double kInfiniteSide = 1e18;  // replaces an infinite side in the prog
 
 double magnitude_of(double float_error) { return std::isfinite(float_error) ? float_error / vm::kFloatError : 0; }
 
-FormulaProof proof_by(const FormulaBound& bound) {
+// `at_surface`: the slope near the surface, or 0 if it is not known.
+FormulaProof proof_by(const FormulaBound& bound, double at_surface) {
   // Below this ratio, the evaluations that bounds in cells save do not repay them in a short formula.
   constexpr double kSteep = 32;
   if (std::isfinite(bound.lipschitz)) {
-    return bound.at_surface > 0 && bound.lipschitz > kSteep * bound.at_surface ? FormulaProof::Steep
-                                                                               : FormulaProof::Proved;
+    return at_surface > 0 && bound.lipschitz > kSteep * at_surface ? FormulaProof::Steep : FormulaProof::Proved;
   }
   // Cells are of use only if some of them have a bound.
   constexpr double kMaxUnbounded = 0.9;
@@ -43,9 +43,9 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
 
 // Estimates the Lipschitz constant of a formula without a proved constant. The slopes that the search has seen next
 // to a place of infinite slope say how near the search came.
-double estimated(const FormulaBound& bound) {
+double estimated(const FormulaBound& bound, double at_surface) {
   constexpr double kMost = 64;  // of the slope near the surface
-  const double seen = bound.at_surface > 0 ? std::min(bound.seen, kMost * bound.at_surface) : bound.seen;
+  const double seen = at_surface > 0 ? std::min(bound.seen, kMost * at_surface) : bound.seen;
   return std::max(1.0, 1.5 * seen);
 }
 
@@ -79,9 +79,10 @@ NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const So
   const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
   const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
-  const FormulaProof proof = !child.certified ? FormulaProof::None : proved ? FormulaProof::Proved : proof_by(bound);
+  // The slope near the displaced surface is not that of the formula.
+  const FormulaProof proof = child.certified ? proof_by(bound, 0) : FormulaProof::None;
   const NodeId sum = maker.make(Kind::Displaced, {}, children, origin);
-  return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound)),
+  return bounded(maker, sum, found.box, child.lipschitz + (proved ? bound.lipschitz : estimated(bound, 0)),
                  child.cancellation + magnitude_of(bound.float_error), proof, origin);
 }
 
@@ -94,9 +95,10 @@ FormulaProof proof_of(const Graph& graph, NodeId bounded) {
 
 NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin) {
   const FormulaBound bound = bound_formula(maker.graph(), formula, box);
+  const double at_surface = slope_at_surface(maker.graph(), formula, box);
   const bool proved = std::isfinite(bound.lipschitz);
-  return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound), magnitude_of(bound.float_error),
-                 proof_by(bound), origin);
+  return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound, at_surface),
+                 magnitude_of(bound.float_error), proof_by(bound, at_surface), origin);
 }
 
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,

@@ -96,6 +96,10 @@ void add_cells(Field& field, const compiler::CompiledField& compiled) {
   }
   field.max_informative_length = std::numeric_limits<double>::infinity();
   field.cancellation = std::max(field.cancellation, field.cells->cancellation());
+  // The error of a value is that of its radius times the slope.
+  if (compiled.certified) {
+    field.value_cancellation += static_cast<double>(field.cells->cancellation()) * compiled.lipschitz;
+  }
   field.convex = false;
 }
 

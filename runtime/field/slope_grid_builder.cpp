@@ -14,7 +14,7 @@ namespace fathom::runtime {
 namespace {
 
 // Maximum work: instructions bounded in all cells together, about half a second. In a long formula, of which every
-// evaluation takes longer, as many as bound the formula in kCells cells.
+// evaluation takes longer, as many as bound the formula in kCells cells: up to three seconds for a thousand nodes.
 constexpr std::uint64_t kMaxWork = 3'000'000, kCells = 16'000;
 // A cell is divided where a value lets a ray step by less than this share of the cell.
 constexpr double kShortStep = 1;

@@ -21,8 +21,9 @@ constexpr double kResolution = 0x1p-40;
 // brackets in float (stream.cpp).
 constexpr double kRootResolution = 0x1p-30;
 // Minimum length of a segment worth intervals, relative to the part that its near end excludes, because intervals
-// cost many evaluations. kCostlyRangeRatio applies where Field::max_informative_length is finite: intervals of
-// iterated maps cost a hundred evaluations.
+// cost many evaluations. kCostlyRangeRatio applies where Field::max_informative_length is finite, because
+// intervals of iterated maps cost a hundred evaluations, and to fields with `cells`, which know slopes without
+// intervals.
 constexpr double kRangeRatio = 8, kCostlyRangeRatio = 64;
 // An interval is informative if it narrows the bounds on the slope to this share.
 constexpr double kProgress = 0.8;
@@ -83,7 +84,8 @@ void CertifiedSearch::supply(double f, std::uint64_t instructions, RealScratch& 
   // Raises g by the rounding error, so that g is nowhere below 0 where the field is 0. A place without a value counts
   // as solid, so that a surface before it is found: hit() tells it from a surface.
   const double g = std::isfinite(f) ? (side_ < 0 ? -f : f) + rounding_ : -1;
-  radius_ = field_->cells && g > rounding_ ? field_->cells->radius(std::abs(f), point()) / speed_ : 0;
+  const bool has_radius = field_->cells && purpose_ != Purpose::Root && g > rounding_;
+  radius_ = has_radius ? field_->cells->radius(std::abs(f), point()) / speed_ : 0;
   switch (purpose_) {
     case Purpose::Begin:
       return begin(g);

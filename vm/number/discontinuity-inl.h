@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "vm/number/error_units-inl.h"
 #include "vm/number/interval_elementary-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -36,10 +37,18 @@ struct Continuous {
   bool bounded() const { return std::isfinite(magnitude(range) + norm + error); }
 };
 
+// Returns 1 / k for a constant k other than 0.
+inline Continuous inverse_of(const Continuous& k) {
+  const Interval one{1, 1}, inverse = one / k.range;
+  const double most = magnitude(inverse);
+  return {one / k.exact, inverse, {0, 0}, {0, 0}, {0, 0}, k.norm, k.error * most * most};
+}
+
 struct Discontinuity {
   // Number of the operation that is not continuous, in the order of evaluation; 0: there is none. Values with the
   // same number are not continuous at the same places, where some operand x passes a value.
   std::uint64_t operation = 0;
+  bool pole;  // the value is infinite there
   // Limits as x rises to that value, and as x falls to it: ranges over all such places. Infinite at a pole.
   Interval limits[2];
   Interval step;        // of a jump: the second limit less the first, anywhere
@@ -56,6 +65,7 @@ struct Discontinuity {
   Discontinuity& operator=(const Discontinuity& other) {
     operation = other.operation;
     if (operation == 0) return *this;
+    pole = other.pole;
     limits[0] = other.limits[0], limits[1] = other.limits[1], step = other.step, reach = other.reach;
     dx = other.dx, dy = other.dy, dz = other.dz, middle = other.middle;
     slope = other.slope, slope_growth = other.slope_growth;
@@ -64,21 +74,22 @@ struct Discontinuity {
   }
 
   bool known() const { return operation != 0; }
-  bool is_pole() const { return slope_growth > 0; }
-  bool is_known_pole() const { return known() && is_pole(); }
-  bool is_known_jump() const { return known() && !is_pole(); }
+  bool is_pole() const { return known() && pole; }
+  bool is_jump() const { return known() && !pole; }
   // `end`: plus or minus infinity.
   bool tends_to(double end) const { return limits[0].lo == end && limits[1].lo == end; }
-  // True if the limits are equal, except for the rounding of doubles.
+  // True if the limits are equal, except for the rounding of doubles, which is far smaller than the step was.
   bool closes() const {
     const double apart = std::max(limits[0].hi - limits[1].lo, limits[1].hi - limits[0].lo);
-    return apart <= kRoundings * (magnitude(limits[0]) + magnitude(limits[1]));
+    return std::isfinite(apart) &&
+           apart <= std::min(kRoundings * (magnitude(limits[0]) + magnitude(limits[1])), 0x1p-20 * magnitude(step));
   }
   // True if the step of a jump is a multiple of a period, except for the rounding of doubles.
   bool is_step_multiple_of(Interval period) const {
     const Interval turns = step / period;
     const double whole = round_nearest(Real{turns.lo}).v;
-    return std::max(std::fabs(turns.lo - whole), std::fabs(turns.hi - whole)) <= kRoundings * std::fabs(whole);
+    return std::fabs(whole) < 0x1p20 &&
+           std::max(std::fabs(turns.lo - whole), std::fabs(turns.hi - whole)) <= kRoundings * std::fabs(whole);
   }
 
   static constexpr double kRoundings = 0x1p-48;
@@ -93,11 +104,12 @@ inline std::uint64_t number_of_operation() {
 // Adds a relative error of `units`, in kUnit, to the bounds: |v| <= |m| + (1 + (v - m)^2) / 2.
 inline Discontinuity with_relative_error(Discontinuity d, double units) {
   if (d.is_pole()) {
-    d.error += units * (magnitude(d.middle) + 0.5);
+    d.error += units * rounding(magnitude(d.middle) + 0.5);
     d.error_growth += 0.5 * units;
   } else {
-    d.error += units * magnitude(d.reach);
+    d.error += units * rounding(magnitude(d.reach));
   }
+  if (!std::isfinite(d.slope + d.slope_growth + d.error + d.error_growth)) return {};
   const double share = units * 0x1p-23;
   d.reach = outward(d.reach.lo - share * std::fabs(d.reach.lo), d.reach.hi + share * std::fabs(d.reach.hi));
   return d;
@@ -109,6 +121,7 @@ inline Discontinuity pole_of_quotient(const Continuous& a, double norm_x, double
   if (contains(a.range, 0) || !a.bounded() || !std::isfinite(norm_x + error_x)) return {};
   Discontinuity d;
   d.operation = number_of_operation();
+  d.pole = true;
   const double end =
       a.range.lo > 0 ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
   d.limits[0] = {-end, -end}, d.limits[1] = {end, end};
@@ -119,7 +132,7 @@ inline Discontinuity pole_of_quotient(const Continuous& a, double norm_x, double
   d.slope_growth = (0.5 * a.norm + norm_x) / least;
   d.error = 0.5 * a.error / least;
   d.error_growth = (0.5 * a.error + error_x) / least;
-  return d.is_pole() ? with_relative_error(d, 1) : Discontinuity();
+  return with_relative_error(d, 1);
 }
 
 // Returns the jump of an angle from -pi to pi, where y passes 0 and x is negative. `angle`: as if it did not jump.
@@ -127,6 +140,7 @@ inline Discontinuity jump_of_angle(const Continuous& angle) {
   if (!angle.bounded()) return {};
   Discontinuity d;
   d.operation = number_of_operation();
+  d.pole = false;
   d.limits[0] = outward(-kPi, -kPi), d.limits[1] = outward(kPi, kPi);
   d.step = outward(2 * kPi, 2 * kPi);
   d.middle = {0, 0};
@@ -144,6 +158,7 @@ inline Discontinuity jumps_of_modulus(const Continuous& a, Interval b, double er
   if (!(b.lo > 0) || !a.bounded() || !std::isfinite(error)) return {};
   Discontinuity d;
   d.operation = number_of_operation();
+  d.pole = false;
   d.limits[0] = b, d.limits[1] = {0, 0};
   d.step = -b;
   d.middle = {0, 0};
@@ -179,8 +194,10 @@ inline Discontinuity scaled(Discontinuity d, const Continuous& k) {
   if (!d.known() || k.norm > 0 || contains(k.range, 0) || !k.bounded()) return {};
   if (k.range.hi < 0) d = -d;
   const Interval size = abs(k.range);
-  for (Interval& limit : d.limits) limit = limit * abs(k.exact);
-  d.step = d.step * abs(k.exact);
+  if (!d.is_pole()) {
+    for (Interval& limit : d.limits) limit = limit * abs(k.exact);
+    d.step = d.step * abs(k.exact);
+  }
   d.middle = d.middle * size, d.reach = d.reach * size;
   d.dx = d.dx * size, d.dy = d.dy * size, d.dz = d.dz * size;
   d.slope *= size.hi, d.error *= size.hi;
@@ -199,7 +216,7 @@ inline Discontinuity maximum(Discontinuity d, const Continuous& u) {
 inline Discontinuity maximum(Discontinuity d, const Discontinuity& other) {
   if (!d.known() || d.operation != other.operation) return {};
   for (int side = 0; side < 2; ++side) d.limits[side] = max(d.limits[side], other.limits[side]);
-  d.step = whole_line();
+  d.step = d.limits[1] - d.limits[0];
   d.middle = hull(d.middle, other.middle), d.reach = max(d.reach, other.reach);
   d.dx = hull(d.dx, other.dx), d.dy = hull(d.dy, other.dy), d.dz = hull(d.dz, other.dz);
   d.slope = std::max(d.slope, other.slope), d.slope_growth = std::max(d.slope_growth, other.slope_growth);

@@ -18,13 +18,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 
-inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-inline constexpr double kUnit = 0x1p-24;  // unit of errors
-
-// Increases a bound by more than the rounding of the nonnegative doubles that it is a sum or product of. A NaN
-// becomes kUnbounded.
-inline double bound(double value) { return value >= 0 ? value * (1 + 1e-14) : kUnbounded; }
-
 // Copies skip the members when not `known`, as for most values.
 struct Logarithm {
   bool known = false;      // false if u may be 0 or negative, and for values without exponentials

@@ -72,9 +72,6 @@ struct Slope {
   static inline Slope broadcast(double value);
 };
 
-// Returns the error, in kUnit, of a rounding to f32 whose result is at most `size`. Subnormals have an absolute
-// error; overflow has no bound.
-inline double rounding(double size) { return size < 3.4e38 ? size + 0x1p-120 : kUnbounded; }
 // Returns the range of the f32 value.
 inline Interval seen(const Slope& a) {
   const Interval range = outward(a.v.lo - bound(a.below * kUnit), a.v.hi + bound(a.above * kUnit));
@@ -246,6 +243,7 @@ inline Slope operator/(const Slope& a, const Slope& b) {
                        rounded_above(q, ((flips ? a.below : a.above) + own) / smallest));
   r.nonnegative = a.nonnegative && b.nonnegative;
   r.logarithm = combined(a, b, log_quotient);
+  if (a.discontinuity.known()) r.discontinuity = scaled(a.discontinuity, inverse_of(continuous(b)));
   return r;
 }
 inline Slope divide(const Slope& a, const Slope& b) { return a / b; }
@@ -295,7 +293,7 @@ inline Slope max(const Slope& a, const Slope& b) {
 template <class Function>
 inline bool closes_jump(const Slope& a, const Function& f) {
   Discontinuity d = a.discontinuity;
-  if (!d.is_known_jump()) return false;
+  if (!d.is_jump()) return false;
   for (Interval& limit : d.limits) limit = f(limit);
   return d.closes();
 }
@@ -310,7 +308,7 @@ inline Slope abs(const Slope& a) {
   const Interval slope = s.lo >= 0 ? Interval{1, 1} : s.hi <= 0 ? Interval{-1, -1} : Interval{-1, 1};
   Slope r = chain(a, abs(a.v), slope, s.lo >= 0 ? a.below : a.error(), s.lo >= 0 ? a.above : a.error());
   r.nonnegative = true;
-  if (a.discontinuity.is_known_pole()) {
+  if (a.discontinuity.is_pole()) {
     r.discontinuity = maximum(a.discontinuity, -a.discontinuity);
     r.discontinuity.reach = abs(a.discontinuity.reach);
   }

@@ -24,7 +24,7 @@ inline Slope smooth(const Slope& a, Interval v, Interval slope, Interval seen_sl
 // overflowed angle is NaN.
 inline double wave_error(Interval s) { return magnitude(s) < 3.4e38 ? 2 / kUnit : kUnbounded; }
 inline bool jumps_by_multiple(const Slope& a, Interval period) {
-  return a.discontinuity.is_known_jump() && a.discontinuity.is_step_multiple_of(period);
+  return a.discontinuity.is_jump() && a.discontinuity.is_step_multiple_of(period);
 }
 inline Interval whole_turn() { return outward(2 * kPi, 2 * kPi); }
 inline Slope sin(const Slope& a) {
@@ -85,7 +85,7 @@ inline Slope exp(const Slope& a) {
   r.nonnegative = true;
   constexpr double kOwn = kKernelUnits * kRoundedLogarithm;
   r.logarithm = make_logarithm(a.v, a.dx, a.dy, a.dz, a.norm, a.below + kOwn, a.above + kOwn, 0);
-  if (a.discontinuity.is_known_pole()) {
+  if (a.discontinuity.is_pole()) {
     r.logarithm.pole = a.discontinuity;
     r.logarithm.pole.error += kOwn;
   }
@@ -148,20 +148,30 @@ inline Slope pow(const Slope& x, const Slope& y) {
   return r;
 }
 
+// Returns a value without a bound on its error if that of an operand has none: the f32 value may be NaN.
+inline Slope or_nan(Slope result, const Slope& a) {
+  if (maybe_nan(a)) result.below = result.above = kUnbounded;
+  return result;
+}
 // Value of a step function: constant if f32 and exact arithmetic agree on one step.
 inline Slope steps(Interval v, Interval alternatives) {
   return alternatives.lo == alternatives.hi ? exactly(alternatives) : jump(v, alternatives);
 }
-inline Slope floor(const Slope& a) { return steps(floor(a.v), floor(seen(a))); }
-inline Slope ceil(const Slope& a) { return steps(ceil(a.v), ceil(seen(a))); }
-inline Slope round_nearest(const Slope& a) { return steps(round_nearest(a.v), round_nearest(seen(a))); }
-inline Slope sign(const Slope& a) { return steps(sign(a.v), sign(seen(a))); }
-inline Slope logical_not(const Slope& a) { return steps(logical_not(a.v), logical_not(seen(a))); }
-inline Slope compare(const Slope& a, const Slope& b) { return steps(compare(a.v, b.v), compare(seen(a), seen(b))); }
-inline Slope step(const Slope& edge, const Slope& x) { return steps(step(edge.v, x.v), step(seen(edge), seen(x))); }
+inline Slope floor(const Slope& a) { return or_nan(steps(floor(a.v), floor(seen(a))), a); }
+inline Slope ceil(const Slope& a) { return or_nan(steps(ceil(a.v), ceil(seen(a))), a); }
+inline Slope round_nearest(const Slope& a) { return or_nan(steps(round_nearest(a.v), round_nearest(seen(a))), a); }
+inline Slope sign(const Slope& a) { return or_nan(steps(sign(a.v), sign(seen(a))), a); }
+inline Slope logical_not(const Slope& a) { return or_nan(steps(logical_not(a.v), logical_not(seen(a))), a); }
+inline Slope compare(const Slope& a, const Slope& b) {
+  return or_nan(or_nan(steps(compare(a.v, b.v), compare(seen(a), seen(b))), a), b);
+}
+inline Slope step(const Slope& edge, const Slope& x) {
+  return or_nan(or_nan(steps(step(edge.v, x.v), step(seen(edge), seen(x))), edge), x);
+}
 
 inline Slope mod(const Slope& a, const Slope& b) {
   if (contains(seen(b), 0)) return jump(whole_line(), whole_line());
+  if (seen(b).hi < 0) return -mod(-a, -b);
   if (b.norm == 0 && jumps_by_multiple(a, b.v)) return mod(without_jump(a), b);
   const Slope turns = floor(a / b);
   if (turns.norm == 0) return a - b * turns;
@@ -170,10 +180,11 @@ inline Slope mod(const Slope& a, const Slope& b) {
   const double slack = 4 * kUnit * (magnitude(sa) + magnitude(sb));
   Slope r = jump(mod(a.v, b.v), {std::min(0.0, sb.lo) - slack, std::max(0.0, sb.hi) + slack});
   if (b.norm == 0) {
-    const double error = slack / kUnit + times(magnitude(turns.v) + 1, b.error());
-    r.discontinuity = jumps_of_modulus(continuous(a), b.v, error);
+    // Also covers an f32 value of a that is on the other side of a jump, whose step is whole turns.
+    const double most_turns = magnitude(hull(turns.v, floor(sa / sb))) + 1;
+    r.discontinuity = jumps_of_modulus(continuous(a), b.v, slack / kUnit + times(most_turns, b.error()));
   }
-  return r;
+  return or_nan(or_nan(r, a), b);
 }
 inline Slope logical_and(const Slope& a, const Slope& b) {
   if (!contains(seen(a), 0)) return b;

@@ -228,6 +228,31 @@ TEST_CASE("repeated cells have a bound if they are equal on both sides of their 
   CHECK(!std::isfinite(bound(0.9, 0.45, Opcode::Sin).lipschitz));
 }
 
+TEST_CASE("jumps that only seem to close, and numbers beyond those of float, have no bound", "[formula][slope]") {
+  vm::Workspace workspace;
+  const auto bound = [&](double period, const std::vector<Step>& steps) {
+    std::vector<Step> all = {{Opcode::X}, {Opcode::Constant, {period}}, {Opcode::Modulo}};
+    all.insert(all.end(), steps.begin(), steps.end());
+    return vm::evaluate_slope(formula(all), dvec3(-2), dvec3(2), workspace);
+  };
+  // Far from 0 the doubles on both sides of the jump are nearly equal.
+  CHECK(!std::isfinite(bound(1, {{Opcode::Offset, {-2e14}}, {Opcode::Abs}, {Opcode::Offset, {2e14}}}).lipschitz));
+  // The number overflows or underflows between the jump and the end.
+  CHECK(!(bound(1, {{Opcode::Offset, {0.5}}, {Opcode::Scale, {3e38}}, {Opcode::Scale, {100}}, {Opcode::Abs}})
+              .float_error < 1e30));
+  CHECK(bound(1, {{Opcode::Offset, {0.5}},
+                  {Opcode::Scale, {0x1p-126}},
+                  {Opcode::Scale, {0x1p-20}},
+                  {Opcode::Abs},
+                  {Opcode::Scale, {0x1p100}},
+                  {Opcode::Scale, {0x1p46}}})
+            .float_error > 0.025);
+  // Divided, and repeated the other way.
+  CHECK(bound(1, {{Opcode::Constant, {2}}, {Opcode::Divide}, {Opcode::Offset, {0.25}}, {Opcode::Abs}}).lipschitz <=
+        0.5 + 1e-9);
+  CHECK(bound(-1, {{Opcode::Offset, {-0.5}}, {Opcode::Abs}}).lipschitz <= 1 + 1e-9);
+}
+
 // The pole of 0.1 / x is a wall on both sides of which the quotient's part of the union vanishes.
 TEST_CASE("a smooth union has a bound where an operand is infinite, unless only on one side", "[formula][slope]") {
   vm::Workspace workspace;
@@ -244,6 +269,7 @@ TEST_CASE("a smooth union has a bound where an operand is infinite, unless only 
   CHECK(both_sides.lipschitz < 20);
   CHECK(both_sides.float_error < 1e-4);
   CHECK(bound({{Opcode::Abs}, {Opcode::Y}, {Opcode::Max}}).lipschitz < 20);
+  CHECK(bound({{Opcode::Abs}, {Opcode::Scale, {2}}, {Opcode::Y}, {Opcode::Max}}).lipschitz < 20);
   CHECK(!std::isfinite(bound({}).lipschitz));
   CHECK(!std::isfinite(bound({{Opcode::Y}, {Opcode::Max}}).lipschitz));
   CHECK(!std::isfinite(bound({{Opcode::Abs}, {Opcode::Negate}}).lipschitz));
