@@ -1,5 +1,6 @@
 // Formulas that jump, turned: rays against the formula itself, sampled finely along each ray in double. No bound on
-// the slope of such a formula holds all over its box (compiler/analysis/formula_cells.h).
+// the slope of such a formula holds all over its box (compiler/analysis/formula_cells.h), unless what is made of the
+// jump is equal on both sides (vm/number/discontinuity-inl.h).
 #include <fmt/format.h>
 
 #include <algorithm>
