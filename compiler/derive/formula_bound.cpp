@@ -150,7 +150,8 @@ class Bisection {
   double seen_ = 0;
 };
 
-// Points are multiples of irrational numbers, modulo 1.
+// Points are multiples of irrational numbers, modulo 1. Source: Roberts, "The Unreasonable Effectiveness of
+// Quasirandom Sequences", 2018.
 double slope_of_nearest(const vm::VerifiedProgram& program, const Box& box) {
   constexpr std::ptrdiff_t kPoints = 256, kNearest = 16;
   constexpr glm::dvec3 kSteps(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);

@@ -90,16 +90,15 @@ void become_large(Field& field, const FarLevels& levels) {
 // relies on interval arithmetic alone.
 void add_cells(Field& field, const compiler::CompiledField& compiled) {
   field.cells = std::make_shared<const SlopeCells>(compiled.distance, compiled.formula_box, compiled.rest_lipschitz);
-  if (!compiled.certified) {
+  if (compiled.certified) {
+    // The error of a value is that of its radius times the slope.
+    field.value_cancellation += static_cast<double>(field.cells->cancellation()) * compiled.lipschitz;
+  } else {
     field.lipschitz = std::numeric_limits<double>::infinity();
     field.inv_lipschitz = 0;
   }
   field.max_informative_length = std::numeric_limits<double>::infinity();
   field.cancellation = std::max(field.cancellation, field.cells->cancellation());
-  // The error of a value is that of its radius times the slope.
-  if (compiled.certified) {
-    field.value_cancellation += static_cast<double>(field.cells->cancellation()) * compiled.lipschitz;
-  }
   field.convex = false;
 }
 

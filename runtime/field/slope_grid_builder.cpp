@@ -18,7 +18,8 @@ namespace {
 constexpr std::uint64_t kMaxWork = 3'000'000, kCells = 16'000;
 // A cell is divided where a value lets a ray step by less than this share of the cell.
 constexpr double kShortStep = 1;
-// A pruned part replaces the whole if it has at most this share of its choices.
+// A pruned part replaces the whole if it has at most this share of its choices. Every part takes memory: with 0.9,
+// the parts of a formula of 682 instructions took 100 MB.
 constexpr double kWorthPruning = 0.5;
 
 struct Cell {

@@ -135,38 +135,35 @@ inline Discontinuity pole_of_quotient(const Continuous& a, double norm_x, double
   return with_relative_error(d, 1);
 }
 
-// Returns the jump of an angle from -pi to pi, where y passes 0 and x is negative. `angle`: as if it did not jump.
-inline Discontinuity jump_of_angle(const Continuous& angle) {
-  if (!angle.bounded()) return {};
+// Returns a jump by `step` between the limits. `away`: the value's bounds away from the jump.
+inline Discontinuity jump_between(Interval before, Interval after, Interval step, const Continuous& away) {
+  if (!away.bounded()) return {};
   Discontinuity d;
   d.operation = number_of_operation();
   d.pole = false;
-  d.limits[0] = outward(-kPi, -kPi), d.limits[1] = outward(kPi, kPi);
-  d.step = outward(2 * kPi, 2 * kPi);
+  d.limits[0] = before, d.limits[1] = after, d.step = step;
   d.middle = {0, 0};
-  d.reach = angle.range;
-  d.dx = angle.dx, d.dy = angle.dy, d.dz = angle.dz;
-  d.slope = angle.norm, d.slope_growth = 0;
-  d.error = angle.error, d.error_growth = 0;
+  d.reach = away.range;
+  d.dx = away.dx, d.dy = away.dy, d.dz = away.dz;
+  d.slope = away.norm, d.slope_growth = 0;
+  d.error = away.error, d.error_growth = 0;
   return d;
+}
+
+// Returns the jump of an angle from -pi to pi, where y passes 0 and x is negative. `angle`: as if it did not jump.
+inline Discontinuity jump_of_angle(const Continuous& angle) {
+  return jump_between(outward(-kPi, -kPi), outward(kPi, kPi), outward(2 * kPi, 2 * kPi), angle);
 }
 
 // Returns the jumps of a mod b for a constant b > 0. `error`: bound on the error of f32 if a is exact, except that
 // f32 may be before a jump where the exact value is behind it. Functions that close the jump change there by twice as
 // much.
 inline Discontinuity jumps_of_modulus(const Continuous& a, Interval b, double error) {
-  if (!(b.lo > 0) || !a.bounded() || !std::isfinite(error)) return {};
-  Discontinuity d;
-  d.operation = number_of_operation();
-  d.pole = false;
-  d.limits[0] = b, d.limits[1] = {0, 0};
-  d.step = -b;
-  d.middle = {0, 0};
-  d.reach = outward(-error * 0x1p-24, b.hi + error * 0x1p-24);
-  d.dx = a.dx, d.dy = a.dy, d.dz = a.dz;
-  d.slope = a.norm, d.slope_growth = 0;
-  d.error = a.error + 3 * error, d.error_growth = 0;
-  return d;
+  if (!(b.lo > 0) || !a.bounded()) return {};
+  Continuous away = a;
+  away.range = outward(-error * 0x1p-24, b.hi + error * 0x1p-24);
+  away.error += 3 * error;
+  return jump_between(b, {0, 0}, -b, away);
 }
 
 inline Discontinuity operator-(Discontinuity d) {

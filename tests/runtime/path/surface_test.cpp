@@ -76,6 +76,25 @@ TEST_CASE("surface: a gradient that faces away is turned just far enough", "[run
   CHECK(rows.steepness[6] == Approx(0.25));
 }
 
+// d_f is a longer way where the field is flatter than the bound of its cell.
+TEST_CASE("surface: new rays start further from a surface that is flat for its cell", "[runtime]") {
+  const auto scene = scene_of(R"_("objects": [{"type": "expression", "formula": "y - 0.5 * floor(x)",
+      "half_size": [2, 2, 2]}])_");
+  const Field field = make_field(scene);
+  REQUIRE(field.cells);
+  SurfaceRows rows{};
+  const float lengths[] = {1, 0.25f, 0.01f, 0};
+  for (std::size_t i = 0; i < std::size(lengths); ++i) {
+    rows.gradient[1][i] = lengths[i];
+    rows.wo[1][i] = rows.size[i] = rows.side[i] = rows.inverse_slope[i] = 1;
+  }
+  set_surface_geometry(field, std::size(lengths), rows);
+  CHECK(rows.offset[0] > 0);
+  CHECK(rows.offset[1] == Approx(4 * rows.offset[0]));
+  CHECK(rows.offset[2] == Approx(kMaxFlatness * rows.offset[0]));
+  CHECK(rows.offset[3] == rows.offset[0]);
+}
+
 TEST_CASE("surface: new rays start clear of the surface, on the side asked for", "[runtime]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Hit hit{{0, 1, 0}, {0, 1, 0}, 1, 1e-7f};
