@@ -96,7 +96,7 @@ class Outline {
 };
 
 // Source of float immediates: the program, with the same value for all lanes, or a table [immediate][lane], in which
-// each instruction's immediates begin at a multiple of four (vm/prune/program_template.h).
+// each instruction's immediates begin at a multiple of four, and the program has none (vm/prune/program_template.h).
 enum class Immediate { Program, PerLane };
 
 template <class T, Immediate kFrom = Immediate::Program>
@@ -198,14 +198,21 @@ class Interpreter {
 #undef OP
   };
 
+  // True per opcode if some immediates are integers.
+  static constexpr bool kIntegers[] = {
+#define OP(Name, mnemonic, form, immediates, ...) has_integers(immediates),
+#include "vm/program/opcodes.def"
+#undef OP
+  };
+
   // Local copies of the instruction's immediates as constants, because stores to the stack could alias the originals.
-  // take() advances past the immediates.
+  // take() advances past the immediates. kInProgram: the program has them, even if the table does, too.
   template <int Count>
   struct Immediates {
     C k[Count > 0 ? Count : 1];
     const std::uint32_t* words;
   };
-  template <int Count>
+  template <int Count, bool kInProgram = kFrom == Immediate::Program>
   HWY_INLINE Immediates<Count> take(Cursor& c) {
     Immediates<Count> result;
     for (int i = 0; i < Count; ++i) {
@@ -217,7 +224,7 @@ class Interpreter {
     }
     c.in_table += Count;
     result.words = program_.words + c.at;
-    c.at += Count;
+    if constexpr (kInProgram) c.at += Count;
     return result;
   }
 
@@ -239,20 +246,16 @@ class Interpreter {
   }
   template <class Op, int Count>
   HWY_INLINE void apply_shape(Cursor& c) {
+    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
+      if (operand_of(program_.words[c.at - 1]) & kPolymorphic) return apply_polymorphic<Count>(c);
+    }
     const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
     const bool moved = modes & kFusedTranslate, joined = modes & kFusedMin;
     const auto by = moved ? take<3>(c) : Immediates<3>{};
-    const auto immediates = take<Count>(c);
+    constexpr bool kKept = kFrom == Immediate::Program || kIntegers[static_cast<std::size_t>(Op::kOpcode)];
+    const auto immediates = take<Count, kKept>(c);
     const Place* from = c.point;
     T* to = joined ? c.top : c.top += kBlock;
-    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
-      if (modes & kPolymorphic) {
-        const T which = C::load(table_ + c.in_table * kLanes);
-        const T value = any_shape(TranslateOp::apply(*from, by.k), immediates.k, which);
-        *to = joined ? MinOp::apply(*to, value, immediates.k) : value;
-        return;
-      }
-    }
     const bool convex = has(Op::kOpcode, Fact::Convex) && c.affine & 1;
     for_used([&](std::size_t i) HWY_ATTR {
       const T value = Traits::lift(
@@ -261,6 +264,18 @@ class Interpreter {
       to[i] = joined ? MinOp::apply(to[i], value, immediates.k) : value;
     });
     if (joined) observer_.next();
+  }
+  // Applies a shape that differs per lane, as vm/prune/program_template.h lays it out.
+  template <int Count>
+  HWY_INLINE void apply_polymorphic(Cursor& c) {
+    const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
+    const bool joined = modes & kFusedMin;
+    const Place from = modes & kPlaced ? AffineOp::apply(*c.point, take<count_Affine>(c).k) : *c.point;
+    const auto by = take<3>(c);
+    const auto immediates = take<Count>(c);
+    const T value = any_shape(TranslateOp::apply(from, by.k), immediates.k, C::load(table_ + c.in_table * kLanes));
+    if (!joined) c.top += kBlock;
+    *c.top = joined ? MinOp::apply(*c.top, value, immediates.k) : value;
   }
   template <class Op, int Count>
   HWY_INLINE void apply_outline(Cursor& c) {

@@ -88,12 +88,16 @@ constexpr int count_names(std::string_view names) {
   return count;
 }
 
+// True if names of immediates contain an integer's, as "iterations:8" (vm/program/opcodes.def).
+constexpr bool has_integers(std::string_view names) { return names.find(':') != std::string_view::npos; }
+
 // Flags in a Shape's operand, which fuse a common sequence into one instruction (compiler/lower/fuse.h).
 // kFusedTranslate: three immediates x, y, z precede the row's own, and the shape is translated there. kFusedMin: the
 // result is the min of the shape and the top value, and replaces the top value.
 inline constexpr std::uint32_t kFusedTranslate = 1, kFusedMin = 2;
-// Flag of a template's RoundBox only (vm/prune/program_template.h): each lane evaluates a shape of its own.
-inline constexpr std::uint32_t kPolymorphic = 4;
+// Flags of a template's RoundBox only (vm/prune/program_template.h). kPolymorphic: each lane evaluates a shape of its
+// own. kPlaced: an Affine's immediates precede the shape's, and map the point for this shape alone.
+inline constexpr std::uint32_t kPolymorphic = 4, kPlaced = 8;
 // Source of a Unary's or Binary's operand: the stack, a coordinate of the top point, an immediate before the row's
 // own, or a local. A Ternary's operands lie on the stack.
 enum class Source : std::uint8_t { Stack, X, Y, Z, Constant, Local };

@@ -7,10 +7,16 @@
 namespace fathom::vm {
 namespace {
 
+// If more than this share of a program's small shapes have affine maps of their own, all are placed shapes. A map
+// takes more time than the shape itself, but few lanes share a template in which some shapes have maps and others do
+// not.
+constexpr double kPlacedShare = 0.25;
+
 // An instruction of a template.
 struct Step {
   std::uint32_t word, instruction;  // opcode word in the template; number of the part's instruction
   std::uint32_t at;                 // offset of the part's opcode word
+  std::uint32_t map = kNone;        // of a placed shape: number of the part's affine map, or kNone if it has none
 };
 
 bool is_outline(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Outline; }
@@ -26,7 +32,9 @@ std::uint32_t as_laid_out(std::uint32_t word) {
                               : word;
 }
 
-// Returns the number of quads of an instruction's constants.
+bool is_placed(std::uint32_t word) { return is_polymorphic(word) && (operand_of(word) & kPlaced) != 0; }
+
+// Returns the number of quads of an instruction's constants, without the map of a placed shape.
 std::uint32_t quads_of(std::uint32_t word) {
   if (is_outline(word)) return 0;
   if (is_polymorphic(word)) return 2;
@@ -37,13 +45,26 @@ Opcode opcode_of(std::uint32_t word) { return static_cast<Opcode>(word & 0xff); 
 bool is_shape(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Shape; }
 bool is_joined_shape(std::uint32_t word) { return is_shape(word) && (operand_of(word) & kFusedMin) != 0; }
 
-// Returns the part's instructions except tags. A shape followed by a min becomes one instruction with kFusedMin.
-std::vector<Step> untagged(const PrunedProgram& part) {
+// True if the last of the steps is a small shape at a point that the step before maps. A drop after them ends that
+// map.
+bool is_mapped(const std::vector<Step>& steps) {
+  return steps.size() > 1 && is_polymorphic(steps.back().word) && steps.back().map == kNone &&
+         opcode_of(steps[steps.size() - 2].word) == Opcode::Affine;
+}
+
+// Returns the part's instructions except tags. A shape followed by a min becomes one instruction with kFusedMin. If
+// `placed`, a small shape and its affine map become one instruction, and so does a small shape without a map.
+std::vector<Step> untagged(const PrunedProgram& part, bool placed) {
   std::vector<Step> steps;
   std::uint32_t instruction = 0;
   for (std::size_t at = 0; at < part.words.size(); at += instruction_length(part.words[at]), ++instruction) {
     const std::uint32_t word = part.words[at];
     if (opcode_of(word) == Opcode::Tag) continue;
+    if (placed && opcode_of(word) == Opcode::Drop && is_mapped(steps)) {
+      steps.back().map = (steps.end() - 2)->instruction;
+      steps.erase(steps.end() - 2);
+      continue;
+    }
     const bool joins = word == opcode_word(Opcode::Min) && steps.size() > 1 && is_shape(steps.back().word) &&
                        !is_joined_shape(steps.back().word);
     if (joins) {
@@ -51,6 +72,9 @@ std::vector<Step> untagged(const PrunedProgram& part) {
     } else {
       steps.push_back({as_laid_out(word), instruction, static_cast<std::uint32_t>(at)});
     }
+  }
+  for (Step& step : steps) {
+    if (placed && is_polymorphic(step.word)) step.word |= kPlaced << 8;
   }
   return steps;
 }
@@ -67,28 +91,45 @@ void sort_union(std::vector<Step>& steps) {
   steps[0].word &= ~kJoinedBit;
 }
 
-// True if immediate i belongs to the template: integers, and the corners of outlines.
-bool keeps_immediate(std::uint32_t word, std::size_t i) {
+// Returns the number of immediates that follow an opcode word in a template: all of the row's own if integers are
+// among them, the corners of outlines, none otherwise.
+std::size_t kept_immediates(std::uint32_t word) {
   const OpcodeInfo& row = *find_opcode(word & 0xff);
-  if (is_outline(word)) return true;
-  const int own = static_cast<int>(i) - leading_immediates(word);
-  return own >= 0 && is_integer_immediate(row, own);
+  if (!is_outline(word) && !has_integers(row.immediate_names)) return 0;
+  return instruction_length(word) - 1 - static_cast<std::size_t>(leading_immediates(word));
 }
 
+// Appends an instruction with the part's kept immediates. Floats among them are 0, except in outlines.
 void append_instruction(const PrunedProgram& part, std::uint32_t word, std::size_t at,
                         std::vector<std::uint32_t>& words, std::vector<double>& doubles) {
   words.push_back(word), doubles.push_back(0);
+  const std::size_t first = at + 1 + static_cast<std::size_t>(leading_immediates(part.words[at]));
   const bool outline = is_outline(word);
-  for (std::size_t i = 0; i + 1 < instruction_length(word); ++i) {
-    const bool keeps = keeps_immediate(word, i);
-    words.push_back(keeps ? part.words[at + 1 + i] : 0);
-    doubles.push_back(outline ? part.doubles[at + 1 + i] : 0);
+  for (std::size_t i = 0; i < kept_immediates(word); ++i) {
+    const bool kept = outline || is_integer_immediate(*find_opcode(word & 0xff), static_cast<int>(i));
+    words.push_back(kept ? part.words[first + i] : 0);
+    doubles.push_back(outline ? part.doubles[first + i] : 0);
   }
 }
 
+// Returns the opcode word of a remainder for a part's opcode word: without the surface of a tag, and without the
+// opcode of a small shape, which the whole program knows.
+std::uint32_t as_remainder(std::uint32_t word) {
+  return opcode_of(word) == Opcode::Tag ? opcode_word(Opcode::Tag) : as_laid_out(word);
+}
+
+// Returns the part's opcode word for the remainder's. `source`: its offset in the whole program. An instruction that
+// the whole program lacks, as a sign, has none.
+std::uint32_t from_remainder(std::uint32_t word, const Code& whole, std::uint32_t source) {
+  if (opcode_of(word) == Opcode::Tag) return whole.words[source];
+  if (!is_shape(word) || !(operand_of(word) & kPolymorphic)) return word;
+  constexpr std::uint32_t kJoined = kFusedMin << 8;
+  return (whole.words[source] & ~kJoined) | (word & kJoined);
+}
+
 // Returns the steps of a part in the order of its template.
-std::vector<Step> distance_steps(const PrunedProgram& part) {
-  std::vector<Step> steps = untagged(part);
+std::vector<Step> distance_steps(const PrunedProgram& part, bool placed) {
+  std::vector<Step> steps = untagged(part, placed);
   sort_union(steps);
   return steps;
 }
@@ -113,13 +154,18 @@ std::size_t bytes_of(const Item& item) {
 }  // namespace
 
 Constants::Constants(const Code& whole) : row_at_(whole.size, 0) {
-  bool spheres = false, boxes = false;
+  bool spheres = false, boxes = false, after_map = false;
+  std::size_t small = 0, mapped = 0;
   for (std::size_t at = 0; at < whole.size; at += instruction_length(whole.words[at])) {
     const Opcode opcode = opcode_of(whole.words[at]);
     spheres = spheres || opcode == Opcode::Sphere;
     boxes = boxes || opcode == Opcode::Box || opcode == Opcode::RoundBox;
+    small += is_polymorphic(whole.words[at]), mapped += after_map && is_polymorphic(whole.words[at]);
+    after_map = opcode == Opcode::Affine;
   }
   round_boxes_ = spheres && boxes;
+  placed_ = static_cast<double>(mapped) > kPlacedShare * static_cast<double>(small);
+  if (placed_) append_identity();
   for (std::size_t at = 0; at < whole.size; at += instruction_length(whole.words[at])) {
     const std::uint32_t word = whole.words[at];
     if (quads_of(word) == 0) continue;
@@ -135,6 +181,11 @@ Constants::Constants(const Code& whole) : row_at_(whole.size, 0) {
     values_.resize((values_.size() + kQuad - 1) / kQuad * kQuad, 0.0f);
     source_of_.resize(values_.size() / kQuad, static_cast<std::uint32_t>(at));
   }
+}
+
+void Constants::append_identity() {
+  values_ = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  source_of_.resize(values_.size() / kQuad, 0);
 }
 
 void Constants::append_polymorphic(std::uint32_t word, const std::uint32_t* immediates) {
@@ -163,9 +214,9 @@ std::size_t Constants::bytes() const {
 std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants& constants,
                                      std::vector<std::uint32_t>& pool) {
   const auto start = pool.size();
-  const std::uint32_t number = remainder_of(part);
+  const std::uint32_t number = remainder_of(part, constants.placed());
   const Remainder& remainder = remainders_[number];
-  pool.resize(start + 2 + part.sources.size());
+  pool.resize(start + 2 + remainder.entries, Constants::kIdentity);
   pool[start] = remainder.program_template, pool[start + 1] = number;
   std::size_t at = 0;
   for (std::size_t i = 0; i < part.sources.size(); ++i, at += instruction_length(part.words[at])) {
@@ -178,21 +229,28 @@ std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants&
 void ProgramTemplates::unpack(const Code& whole, const Constants& constants, const std::uint32_t* pool,
                               std::uint32_t at, PrunedProgram& out) const {
   const Remainder& remainder = remainders_[pool[at + 1]];
-  out.words = remainder.words;
-  out.doubles.assign(out.words.size(), 0);
-  out.sources.clear();
   out.locals = remainder.locals, out.max_values = remainder.max_values, out.max_points = remainder.max_points;
-  out.choices = remainder.choices, out.cost = remainder.cost;
+  out.choices = remainder.choices, out.cost = 0;
   const std::uint32_t* entry = pool + at + 2;
-  const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
-  for (std::size_t word = 0, i = 0; word < out.words.size(); word += instruction_length(out.words[word]), ++i) {
-    const std::uint32_t held = entry[remainder.place[i]];
-    const std::uint32_t source = quads_of(out.words[word]) > 0 ? constants.source(held) : held;
-    out.sources.push_back(source);
-    if (opcode_of(out.words[word]) == Opcode::Tag) out.words[word] = whole.words[source];
-    const std::size_t count = instruction_length(out.words[word]) - 1;
-    std::copy_n(whole.words + source + 1, count, out.words.begin() + offset(word + 1));
-    std::copy_n(whole.doubles + source + 1, count, out.doubles.begin() + offset(word + 1));
+  out.sources.clear();
+  std::size_t length = 0;
+  for (std::size_t i = 0, kept_at = 0; i < remainder.place.size(); ++i) {
+    const std::uint32_t kept = remainder.words[kept_at], held = entry[remainder.place[i]];
+    out.sources.push_back(quads_of(kept) > 0 ? constants.source(held) : held);
+    length += instruction_length(from_remainder(kept, whole, out.sources[i]));
+    kept_at += 1 + kept_immediates(kept);
+  }
+  out.words.resize(length), out.doubles.resize(length);
+  std::size_t to = 0, kept_at = 0;
+  for (const std::uint32_t source : out.sources) {
+    const std::uint32_t kept = remainder.words[kept_at], word = from_remainder(kept, whole, source),
+                        first = source + 1;
+    const std::size_t count = instruction_length(word) - 1;
+    out.cost += instruction_cost(word);
+    out.words[to] = word, out.doubles[to] = 0;
+    std::copy_n(whole.words + first, count, out.words.data() + to + 1);
+    std::copy_n(whole.doubles + first, count, out.doubles.data() + to + 1);
+    to += 1 + count, kept_at += 1 + kept_immediates(kept);
   }
 }
 
@@ -208,13 +266,12 @@ void ProgramTemplates::renumber(const ProgramTemplates& others, std::uint32_t* p
   pool[at] = remainders_[number].program_template, pool[at + 1] = number;
 }
 
-std::uint32_t ProgramTemplates::remainder_of(const PrunedProgram& part) {
+std::uint32_t ProgramTemplates::remainder_of(const PrunedProgram& part, bool placed) {
   Remainder& wanted = wanted_;
   wanted.words.clear(), wanted.doubles.clear();
   bool outlines = false;
   for (std::size_t at = 0; at < part.words.size(); at += instruction_length(part.words[at])) {
-    const bool tag = opcode_of(part.words[at]) == Opcode::Tag;
-    append_instruction(part, tag ? opcode_word(Opcode::Tag) : part.words[at], at, wanted.words, wanted.doubles);
+    append_instruction(part, as_remainder(part.words[at]), at, wanted.words, wanted.doubles);
     outlines = outlines || is_outline(part.words[at]);
   }
   if (!outlines) wanted.doubles.clear();
@@ -222,20 +279,25 @@ std::uint32_t ProgramTemplates::remainder_of(const PrunedProgram& part) {
 
   Remainder remainder = wanted;
   remainder.locals = part.locals, remainder.max_values = part.max_values, remainder.max_points = part.max_points;
-  remainder.choices = part.choices, remainder.cost = part.cost;
+  remainder.choices = part.choices;
   ProgramTemplate program_template{{}, {}, part.locals, part.max_values, part.max_points, part.choices, 0, {}};
   remainder.place.assign(part.sources.size(), kNone);
   std::uint32_t places = 0;
-  for (const Step& step : distance_steps(part)) {
+  const auto add_row = [&](std::uint32_t instruction, std::uint32_t quads) {
+    if (instruction != kNone) remainder.place[instruction] = places;
+    program_template.quads.push_back(static_cast<std::uint8_t>(quads));
+    ++places;
+  };
+  for (const Step& step : distance_steps(part, placed)) {
     append_instruction(part, step.word, step.at, program_template.words, program_template.doubles);
     ++program_template.instructions;
-    if (quads_of(step.word) == 0) continue;
-    remainder.place[step.instruction] = places++;
-    program_template.quads.push_back(static_cast<std::uint8_t>(quads_of(step.word)));
+    if (is_placed(step.word)) add_row(step.map, quads_of(opcode_word(Opcode::Affine)));
+    if (quads_of(step.word) > 0) add_row(step.instruction, quads_of(step.word));
   }
   for (std::uint32_t& place : remainder.place) {
     if (place == kNone) place = places++;
   }
+  remainder.entries = places;
   if (!outlines) program_template.doubles.clear();
   remainder.program_template = number_of(std::move(program_template));
   return add(std::move(remainder));

@@ -11,8 +11,8 @@
 //     templates.unpack(whole, constants, pool.data(), at, part);  // restores the part
 //
 // A template has only what distances need: it has no tags, its unions are sorted by opcode, and all small shapes
-// become one instruction that evaluates a different shape in every lane. The rest of a pruned program is its
-// remainder.
+// become one instruction that evaluates a different shape in every lane, with the affine map of its point. The rest
+// of a pruned program is its remainder.
 //
 // Tested by: tests/vm/prune/program_template_test.cpp
 #pragma once
@@ -47,16 +47,21 @@ inline constexpr std::size_t kPolymorphicImmediates = 4;
 constexpr bool can_be_polymorphic(std::string_view immediates, int cost) {
   constexpr int kMaxCost = 64;  // expensive shapes are excluded, because all lanes would wait for them
   const auto count = static_cast<std::size_t>(count_names(immediates));
-  return count > 0 && count <= kPolymorphicImmediates && immediates.find(':') == std::string_view::npos && cost > 0 &&
-         cost <= kMaxCost;
+  return count > 0 && count <= kPolymorphicImmediates && !has_integers(immediates) && cost > 0 && cost <= kMaxCost;
 }
 
 // Constants of a whole program by instruction, in the layout that lanes load. In a program with both spheres and
 // boxes, these are laid out as round boxes, which have the same distances bit for bit (except for the sign of a
-// zero).
+// zero). In a program many of whose small shapes have affine maps, the first row is the identity, the map of the
+// other small shapes.
 class Constants {
  public:
+  static constexpr std::uint32_t kIdentity = 0;  // its row
+
   explicit Constants(const Code& whole);
+
+  // True if templates have placed shapes (kPlaced).
+  bool placed() const { return placed_; }
 
   // Converts the offset of an opcode word to the row of its constants, in quads, and back.
   std::uint32_t row(std::uint32_t source) const { return row_at_[source]; }
@@ -67,19 +72,20 @@ class Constants {
 
  private:
   Opcode laid_out(Opcode opcode) const;
+  void append_identity();
   void append_polymorphic(std::uint32_t word, const std::uint32_t* immediates);
 
-  bool round_boxes_ = false;
+  bool round_boxes_ = false, placed_ = false;
   std::vector<float> values_;
   std::vector<std::uint32_t> row_at_;     // [word]
   std::vector<std::uint32_t> source_of_;  // [quad]
 };
 
 struct ProgramTemplate {
-  std::vector<std::uint32_t> words;  // float immediates are 0
+  std::vector<std::uint32_t> words;  // without float immediates, except those beside integers, which are 0
   std::vector<double> doubles;       // [word] constants of outlines, which belong to the template; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
-  std::vector<std::uint8_t> quads;  // number of quads of each instruction that has constants
+  std::vector<std::uint8_t> quads;  // number of quads of each row of constants, in the order of the instructions
 
   operator Code() const {
     return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices};
@@ -87,8 +93,8 @@ struct ProgramTemplate {
 };
 
 // Templates and remainders of many pruned programs. A part in a pool consists of its template's number, its
-// remainder's number, the rows of constants of the template's instructions that have constants, and the offsets in
-// the whole program of the part's other instructions.
+// remainder's number, the rows of constants of the template's instructions that have constants (two of a placed
+// shape, its map's and its own), and the offsets in the whole program of the part's other instructions.
 class ProgramTemplates {
  public:
   // Appends the part to the pool. Returns the index of its first entry.
@@ -110,14 +116,14 @@ class ProgramTemplates {
 
  private:
   struct Remainder {
-    std::vector<std::uint32_t> words;  // the part's, except that float immediates and tags' surfaces are 0
+    std::vector<std::uint32_t> words;  // the part's, without what the whole program knows, as in the template
     std::vector<double> doubles;       // [word] constants of outlines; empty without outlines
     std::vector<std::uint32_t> place;  // [instruction] index of its entry in the pool, after the two numbers
+    std::uint32_t entries;             // in the pool, after the two numbers
     std::uint32_t program_template, locals, max_values, max_points, choices;
-    std::uint64_t cost;
   };
   using Index = std::unordered_multimap<std::uint64_t, std::uint32_t>;  // by hash of the words
-  std::uint32_t remainder_of(const PrunedProgram& part);
+  std::uint32_t remainder_of(const PrunedProgram& part, bool placed);
   std::uint32_t add(Remainder&& remainder);
   std::uint32_t number_of(ProgramTemplate&& program_template);
 
