@@ -39,7 +39,7 @@ namespace fathom::runtime {
 struct RegionOptions {
   int threads = 1;
   // Maximum size of the regions, bytes. If the regions would be larger, leaves are longer or there are no regions.
-  std::size_t memory = 64u << 20;
+  std::size_t memory = 128u << 20;
   // Approximate number of evaluations of the field. Building the regions may not take longer than so many evaluations
   // of the whole program. If building would, leaves are longer or there are no regions.
   double evaluations = std::numeric_limits<double>::infinity();

@@ -41,7 +41,7 @@ struct Execution {
   int threads = 0;  // in RenderOptions 0: one per processor
   Marching marching;
   bool regions = true;                    // build regions if they make the scene faster (runtime/field/regions.h)
-  std::size_t region_memory = 64u << 20;  // max size of the regions, bytes
+  std::size_t region_memory = 128u << 20;  // max size of the regions, bytes
   bool native_code = true;                // compile programs to machine code where that pays
   FilmLayers layers;
   bool profile = false;  // measure the times of stages (Stats::stages)

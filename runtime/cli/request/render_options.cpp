@@ -182,7 +182,7 @@ void add_marching_options(Arguments& arguments, RenderRequest& request) {
                  request.no_regions);
   arguments.flag("--no-native", "Interpret programs, do not compile them to machine code; the picture is the same",
                  request.no_native);
-  arguments.option("--region-memory", "MB", "Max memory of regions (64)", whole(request.region_memory, 1, 1 << 20));
+  arguments.option("--region-memory", "MB", "Max memory of regions (128)", whole(request.region_memory, 1, 1 << 20));
   arguments.option("--max-steps", "N", "Max evaluations per ray (512); for sphere, relaxed and automatic",
                    whole(request.steps, 1, 1 << 20));
   arguments.option("--relaxation", "FACTOR", "Step length in safe radii, from 1 to below 2 (1.6); for relaxed",
