@@ -93,9 +93,9 @@ std::size_t Regions::evaluate_outside(vm::Points points, std::size_t near, float
 }
 
 void Regions::part_of(const Node& node, vm::PrunedProgram& part) const {
-  part = {};
-  if (node.kind() != Kind::Program) return;
-  if (node.payload() == kWhole) {
+  if (node.kind() != Kind::Program) {
+    part = {};
+  } else if (node.payload() == kWhole) {
     part = whole_part_;
   } else {
     templates_.unpack(whole_, *constants_, pool_.data(), node.payload(), part);
@@ -151,17 +151,20 @@ void Regions::evaluate_surface(vm::Points points, std::size_t count, vm::Surface
     leaves[i] = {find(points.x[i], points.y[i], points.z[i]).node.ref, i};
   }
   std::sort(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(count));
+  vm::PrunedProgram part;
   for (std::size_t first = 0; first < count;) {
     std::size_t last = first;
     while (last < count && leaves[last].first == leaves[first].first) ++last;
-    evaluate_surfaces_of(std::span(leaves).subspan(first, last - first), points, out, workspace);
+    part_of({0, leaves[first].first}, part);
+    evaluate_surfaces_of(part, std::span(leaves).subspan(first, last - first), points, out, workspace);
     first = last;
   }
 }
 
-// Evaluates points whose leaves have the same program. A point that rounding put into a far leaf, and so not near the
-// surface at all, is evaluated by the whole program.
-void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
+// Evaluates points whose leaves have the same program, `part`. A point that rounding put into a far leaf, and so not
+// near the surface at all, is evaluated by the whole program.
+void Regions::evaluate_surfaces_of(const vm::PrunedProgram& part,
+                                   std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                                    vm::SurfaceValues out, vm::Workspace& workspace) const {
   alignas(64) std::array<float, kMaxHits> x, y, z, d, gx, gy, gz, convex;
   alignas(64) std::array<std::uint32_t, kMaxHits> surface;
@@ -169,8 +172,6 @@ void Regions::evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std:
     const std::uint32_t point = same[i].second;
     x[i] = points.x[point], y[i] = points.y[point], z[i] = points.z[point];
   }
-  vm::PrunedProgram part;
-  part_of({0, same[0].first}, part);
   vm::evaluate_surface(part.words.empty() ? whole_ : vm::Code(part), {x.data(), y.data(), z.data()}, same.size(),
                        {d.data(), gx.data(), gy.data(), gz.data(), surface.data(), convex.data()}, workspace);
   for (std::size_t i = 0; i < same.size(); ++i) {

@@ -147,7 +147,8 @@ class Regions {
   void sort(vm::Points points, std::size_t near, RegionScratch& scratch) const;
   std::size_t evaluate_outside(vm::Points points, std::size_t near, float* distance, RegionScratch& scratch,
                                vm::Workspace& workspace) const;
-  void evaluate_surfaces_of(std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
+  void evaluate_surfaces_of(const vm::PrunedProgram& part,
+                            std::span<const std::pair<std::uint32_t, std::uint32_t>> same, vm::Points points,
                             vm::SurfaceValues out, vm::Workspace& workspace) const;
   void part_of(const Node& node, vm::PrunedProgram& part) const;
   vm::Code code_at(glm::dvec3 point, RealScratch& scratch) const;

@@ -198,13 +198,6 @@ class Interpreter {
 #undef OP
   };
 
-  // True per opcode if some immediates are integers.
-  static constexpr bool kIntegers[] = {
-#define OP(Name, mnemonic, form, immediates, ...) has_integers(immediates),
-#include "vm/program/opcodes.def"
-#undef OP
-  };
-
   // Local copies of the instruction's immediates as constants, because stores to the stack could alias the originals.
   // take() advances past the immediates. kInProgram: the program has them, even if the table does, too.
   template <int Count>
@@ -252,7 +245,7 @@ class Interpreter {
     const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
     const bool moved = modes & kFusedTranslate, joined = modes & kFusedMin;
     const auto by = moved ? take<3>(c) : Immediates<3>{};
-    constexpr bool kKept = kFrom == Immediate::Program || kIntegers[static_cast<std::size_t>(Op::kOpcode)];
+    constexpr bool kKept = kFrom == Immediate::Program || row_of(opcode_word(Op::kOpcode)).has_integers;
     const auto immediates = take<Count, kKept>(c);
     const Place* from = c.point;
     T* to = joined ? c.top : c.top += kBlock;

@@ -17,15 +17,16 @@ struct OpcodeRow {
   Form form;
   Choice choice;
   Fact facts;
-  int immediates;  // as OpcodeInfo::immediates
-  int cost;        // as OpcodeInfo::cost
+  int immediates;     // as OpcodeInfo::immediates
+  int cost;           // as OpcodeInfo::cost
+  bool has_integers;  // true if integers are among the immediates
 };
 
 inline constexpr auto kOpcodeRows = [] {
   using enum Fact;
   return std::array<OpcodeRow, kOpcodeCount>{{
 #define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) \
-  {Opcode::Name, Form::form, Choice::choice, facts, count_names(immediates), cost},
+  {Opcode::Name, Form::form, Choice::choice, facts, count_names(immediates), cost, has_integers(immediates)},
 #include "vm/program/opcodes.def"
 #undef OP
   }};
@@ -35,7 +36,7 @@ constexpr bool has(Opcode opcode, Fact wanted) {
   return has(kOpcodeRows[static_cast<std::size_t>(opcode)].facts, wanted);
 }
 
-inline const OpcodeRow& row_of(std::uint32_t word) { return kOpcodeRows[word & 0xff]; }
+constexpr const OpcodeRow& row_of(std::uint32_t word) { return kOpcodeRows[word & 0xff]; }
 
 inline bool is_function(Form form) { return form == Form::Unary || form == Form::Binary; }
 inline bool is_joined(std::uint32_t word) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "vm/program/opcode_rows.h"
+
 namespace fathom::vm {
 namespace {
 
@@ -19,12 +21,16 @@ struct Step {
   std::uint32_t map = kNone;        // of a placed shape: number of the part's affine map, or kNone if it has none
 };
 
-bool is_outline(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Outline; }
+constexpr std::array<bool, kOpcodeCount> kPolymorphicRows = {
+#define OP(Name, mnemonic, form, immediates, choice, cost, ...) \
+  Form::form == Form::Shape &&can_be_polymorphic(immediates, cost),
+#include "vm/program/opcodes.def"
+#undef OP
+};
 
-bool is_polymorphic(std::uint32_t word) {
-  const OpcodeInfo& row = *find_opcode(word & 0xff);
-  return row.form == Form::Shape && can_be_polymorphic(row.immediate_names, row.cost);
-}
+bool is_outline(std::uint32_t word) { return row_of(word).form == Form::Outline; }
+
+bool is_polymorphic(std::uint32_t word) { return kPolymorphicRows[word & 0xff]; }
 
 // Returns the opcode word that a template has for a part's opcode word.
 std::uint32_t as_laid_out(std::uint32_t word) {
@@ -38,12 +44,11 @@ bool is_placed(std::uint32_t word) { return is_polymorphic(word) && (operand_of(
 std::uint32_t quads_of(std::uint32_t word) {
   if (is_outline(word)) return 0;
   if (is_polymorphic(word)) return 2;
-  return static_cast<std::uint32_t>((instruction_length(word) - 1 + kQuad - 1) / kQuad);
+  return static_cast<std::uint32_t>((immediates_of(word) + kQuad - 1) / kQuad);
 }
 
 Opcode opcode_of(std::uint32_t word) { return static_cast<Opcode>(word & 0xff); }
-bool is_shape(std::uint32_t word) { return find_opcode(word & 0xff)->form == Form::Shape; }
-bool is_joined_shape(std::uint32_t word) { return is_shape(word) && (operand_of(word) & kFusedMin) != 0; }
+bool is_shape(std::uint32_t word) { return row_of(word).form == Form::Shape; }
 
 // True if the last of the steps is a small shape at a point that the step before maps. A drop after them ends that
 // map.
@@ -66,7 +71,7 @@ std::vector<Step> untagged(const PrunedProgram& part, bool placed) {
       continue;
     }
     const bool joins = word == opcode_word(Opcode::Min) && steps.size() > 1 && is_shape(steps.back().word) &&
-                       !is_joined_shape(steps.back().word);
+                       !is_joined(steps.back().word);
     if (joins) {
       steps.back().word |= kFusedMin << 8;
     } else {
@@ -83,7 +88,7 @@ std::vector<Step> untagged(const PrunedProgram& part, bool placed) {
 // programs that begin with the same shapes in different orders share a template.
 void sort_union(std::vector<Step>& steps) {
   if (steps.empty() || !is_shape(steps[0].word)) return;
-  auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined_shape(s.word); });
+  auto end = std::find_if(steps.begin() + 1, steps.end(), [](const Step& s) { return !is_joined(s.word); });
   constexpr std::uint32_t kJoinedBit = kFusedMin << 8;
   std::stable_sort(steps.begin(), end,
                    [](const Step& a, const Step& b) { return (a.word & ~kJoinedBit) < (b.word & ~kJoinedBit); });
@@ -94,9 +99,8 @@ void sort_union(std::vector<Step>& steps) {
 // Returns the number of immediates that follow an opcode word in a template: all of the row's own if integers are
 // among them, the corners of outlines, none otherwise.
 std::size_t kept_immediates(std::uint32_t word) {
-  const OpcodeInfo& row = *find_opcode(word & 0xff);
-  if (!is_outline(word) && !has_integers(row.immediate_names)) return 0;
-  return instruction_length(word) - 1 - static_cast<std::size_t>(leading_immediates(word));
+  if (!is_outline(word) && !row_of(word).has_integers) return 0;
+  return immediates_of(word) - static_cast<std::size_t>(leading_immediates(word));
 }
 
 // Appends an instruction with the part's kept immediates. Floats among them are 0, except in outlines.
@@ -237,7 +241,7 @@ void ProgramTemplates::unpack(const Code& whole, const Constants& constants, con
   for (std::size_t i = 0, kept_at = 0; i < remainder.place.size(); ++i) {
     const std::uint32_t kept = remainder.words[kept_at], held = entry[remainder.place[i]];
     out.sources.push_back(quads_of(kept) > 0 ? constants.source(held) : held);
-    length += instruction_length(from_remainder(kept, whole, out.sources[i]));
+    length += 1 + immediates_of(from_remainder(kept, whole, out.sources[i]));
     kept_at += 1 + kept_immediates(kept);
   }
   out.words.resize(length), out.doubles.resize(length);
@@ -245,7 +249,7 @@ void ProgramTemplates::unpack(const Code& whole, const Constants& constants, con
   for (const std::uint32_t source : out.sources) {
     const std::uint32_t kept = remainder.words[kept_at], word = from_remainder(kept, whole, source),
                         first = source + 1;
-    const std::size_t count = instruction_length(word) - 1;
+    const std::size_t count = immediates_of(word);
     out.cost += instruction_cost(word);
     out.words[to] = word, out.doubles[to] = 0;
     std::copy_n(whole.words + first, count, out.words.data() + to + 1);
