@@ -104,11 +104,12 @@ void Regions::part_of(const Node& node, vm::PrunedProgram& part) const {
 
 const vm::PrunedProgram& Regions::part_of(const Node& node, RealScratch& scratch) const {
   if (node.kind() == Kind::Program && node.payload() == kWhole) return whole_part_;
-  if (scratch.of != this || scratch.ref != node.ref) {
-    part_of(node, scratch.part);
-    scratch.of = this, scratch.ref = node.ref;
+  RealScratch::Slot& slot = scratch.slots[node.ref * 0x9e3779b9u >> (32 - RealScratch::kSlotBits)];
+  if (slot.of != this || slot.ref != node.ref) {
+    part_of(node, slot.part);
+    slot.of = this, slot.ref = node.ref;
   }
-  return scratch.part;
+  return slot.part;
 }
 
 double Regions::evaluate(glm::dvec3 p, RealScratch& scratch, std::uint64_t& instructions) const {

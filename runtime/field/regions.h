@@ -72,10 +72,15 @@ class Regions;
 // Memory that a thread needs to evaluate in double, one point at a time.
 struct RealScratch {
   vm::Workspace workspace;
-  // The part evaluated last. The next point often needs the same part, which is then unpacked only once.
-  const Regions* of = nullptr;
-  std::uint32_t ref = 0;  // word of the part's leaf
-  vm::PrunedProgram part;
+  // Parts evaluated lately, by the leaf's word. The next point often needs the same part, or another one of the same
+  // ray, which is then unpacked only once.
+  struct Slot {
+    const Regions* of = nullptr;
+    std::uint32_t ref = 0;  // word of the part's leaf
+    vm::PrunedProgram part;
+  };
+  static constexpr int kSlotBits = 6;
+  std::array<Slot, 1 << kSlotBits> slots;  // by the high bits of a product (Knuth, TAOCP 3, 1973, 6.4)
 };
 
 class Regions {
