@@ -62,7 +62,7 @@ bool is_mapped(const std::vector<Step>& steps) {
 std::vector<Step> untagged(const PrunedProgram& part, bool placed) {
   std::vector<Step> steps;
   std::uint32_t instruction = 0;
-  for (std::size_t at = 0; at < part.words.size(); at += instruction_length(part.words[at]), ++instruction) {
+  for (std::size_t at = 0; at < part.words.size(); at += 1 + immediates_of(part.words[at]), ++instruction) {
     const std::uint32_t word = part.words[at];
     if (opcode_of(word) == Opcode::Tag) continue;
     if (placed && opcode_of(word) == Opcode::Drop && is_mapped(steps)) {
@@ -107,6 +107,7 @@ std::size_t kept_immediates(std::uint32_t word) {
 void append_instruction(const PrunedProgram& part, std::uint32_t word, std::size_t at,
                         std::vector<std::uint32_t>& words, std::vector<double>& doubles) {
   words.push_back(word), doubles.push_back(0);
+  if (kept_immediates(word) == 0) return;
   const std::size_t first = at + 1 + static_cast<std::size_t>(leading_immediates(part.words[at]));
   const bool outline = is_outline(word);
   for (std::size_t i = 0; i < kept_immediates(word); ++i) {
@@ -223,7 +224,7 @@ std::uint32_t ProgramTemplates::pack(const PrunedProgram& part, const Constants&
   pool.resize(start + 2 + remainder.entries, Constants::kIdentity);
   pool[start] = remainder.program_template, pool[start + 1] = number;
   std::size_t at = 0;
-  for (std::size_t i = 0; i < part.sources.size(); ++i, at += instruction_length(part.words[at])) {
+  for (std::size_t i = 0; i < part.sources.size(); ++i, at += 1 + immediates_of(part.words[at])) {
     const std::uint32_t source = part.sources[i];
     pool[start + 2 + remainder.place[i]] = quads_of(part.words[at]) > 0 ? constants.row(source) : source;
   }
@@ -274,7 +275,7 @@ std::uint32_t ProgramTemplates::remainder_of(const PrunedProgram& part, bool pla
   Remainder& wanted = wanted_;
   wanted.words.clear(), wanted.doubles.clear();
   bool outlines = false;
-  for (std::size_t at = 0; at < part.words.size(); at += instruction_length(part.words[at])) {
+  for (std::size_t at = 0; at < part.words.size(); at += 1 + immediates_of(part.words[at])) {
     append_instruction(part, as_remainder(part.words[at]), at, wanted.words, wanted.doubles);
     outlines = outlines || is_outline(part.words[at]);
   }
