@@ -30,11 +30,11 @@ std::string cpp_header() {
 std::string glsl_header() {
   std::string text =
       "namespace emitted_glsl {\nusing namespace glm;\n"
-      "struct Program {\n  const char* name;\n  float (*distance)(vec3);\n};\n";
+      "struct Program {\n  const char* name;\n  float (*distance)(vec3);\n  int (*surface)(vec3);\n};\n";
   std::string table;
   for (const EmittedProgram& program : emitted_programs()) {
-    text += compiler::emit_glsl(program.scene, program.name);
-    table += fmt::format("    {{\"{0}\", emitted_glsl::{0}_distance}},\n", program.name);
+    text += compiler::emit_glsl(program.scene, program.name, true);
+    table += fmt::format("    {{\"{0}\", emitted_glsl::{0}_distance, emitted_glsl::{0}_surface}},\n", program.name);
   }
   return text + "}\ninline constexpr emitted_glsl::Program kEmittedGlsl[] = {\n" + table + "};\n";
 }

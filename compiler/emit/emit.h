@@ -3,7 +3,7 @@
 // (vm/record/record.h).
 //
 // The function maps a point of the scene to a distance, both in scene units. The length of the text depends on the
-// program alone. Surfaces and materials are not part of the text.
+// program alone. Materials are not part of the text.
 // Tested by: tests/compiler/emit/emit_test.cpp, tests/compiler/emit/emitted_cpp_test.cpp
 #pragma once
 
@@ -19,8 +19,9 @@ namespace fathom::compiler {
 std::string emit_cpp(const CompiledScene& scene, const std::string& name_space);
 
 // Prints `float NAME_distance(vec3 p)` in both GLSL ES 3.00 and GLSL 3.30, without #version, precision or main. All
-// functions of the text are named NAME_something.
-std::string emit_glsl(const CompiledScene& scene, const std::string& name);
+// functions of the text are named NAME_something. `surfaces`: also prints `int NAME_surface(vec3 p)`, the index in
+// CompiledScene::surfaces of the surface to which the distance belongs, as vm::evaluate_surface() finds it.
+std::string emit_glsl(const CompiledScene& scene, const std::string& name, bool surfaces = false);
 
 // Returns the problem with a name for the emitted code; empty when there is none.
 std::string problem_with_namespace(std::string_view name);

@@ -23,7 +23,7 @@ std::string guard_of(const std::string& name_space) {
 
 std::string emit_cpp(const CompiledScene& scene, const std::string& name_space) {
   FunctionLibrary functions(kCpp);
-  const std::string body = print_program(kCpp, scene.distance, scene.origin, functions);
+  const std::string body = print_program(kCpp, scene.distance, scene.origin, functions, Result::Distance);
   std::string text = fmt::format(fmt::runtime(kCppHead), describe(scene), name_space, guard_of(name_space));
   text += fmt::format("namespace {} {{\n\n{}", name_space, kCppPrimitives);
   for (const char* type : {"float", "double"}) text += '\n' + fmt::format(fmt::runtime(kCppScalar), type);

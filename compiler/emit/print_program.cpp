@@ -22,11 +22,23 @@ std::string comment_text(std::string_view text) {
   return result;
 }
 
+// The texts of a value and of the number of the surface to which it belongs.
+struct Value {
+  Expression number;
+  std::string surface = "0";
+};
+
+// Returns the text of a choice between surfaces: a if `x < y`, b if `y < x`, otherwise the lesser number, as in
+// vm/number/tagged-inl.h.
+std::string chosen(const std::string& x, const std::string& y, const std::string& a, const std::string& b) {
+  return fmt::format("({0} < {1} ? {2} : {1} < {0} ? {3} : min({2}, {3}))", x, y, a, b);
+}
+
 // Runs the program on names: both stacks and the locals hold the texts of the values that the machine's would hold.
 class ProgramPrinter {
  public:
-  ProgramPrinter(const Language& language, const vm::Program& program, FunctionLibrary& functions)
-      : language_(language), program_(program), functions_(functions), locals_(program.locals) {}
+  ProgramPrinter(const Language& language, const vm::Program& program, FunctionLibrary& functions, Result result)
+      : language_(language), program_(program), functions_(functions), result_(result), locals_(program.locals) {}
 
   std::string print(const glm::dvec3& origin) {
     points_.push_back({"p"});
@@ -39,7 +51,8 @@ class ProgramPrinter {
       comment_ = known && program_.debug[i].symbol.ends_with('"') ? program_.debug[i].symbol : "";
       instruction();
     }
-    out_ += fmt::format("  return {};\n", values_.back().text);
+    out_ += fmt::format("  return {};\n",
+                        result_ == Result::Surface ? values_.back().surface : values_.back().number.text);
     return std::move(out_);
   }
 
@@ -61,7 +74,7 @@ class ProgramPrinter {
         shape(row, word, immediates);
         break;
       case Form::Outline:
-        push(functions_.apply(row.opcode, {points_.back()}, immediates));
+        push({functions_.apply(row.opcode, {points_.back()}, immediates)});
         break;
       case Form::Unary:
       case Form::Binary:
@@ -82,56 +95,91 @@ class ProgramPrinter {
     if (modes & vm::kFusedTranslate) {
       p = functions_.apply(Opcode::Translate, {p}, {{}, std::span(program_.doubles).subspan(leading_, 3)});
     }
-    Expression value = functions_.apply(row.opcode, {p}, immediates);
-    if (modes & vm::kFusedMin) value = functions_.apply(Opcode::Min, {pop(), value}, {});
+    Value value{functions_.apply(row.opcode, {p}, immediates)};
+    if (modes & vm::kFusedMin) {
+      const Value below = pop();
+      if (result_ == Result::Surface && below.surface != value.surface) value = named(value);
+      value = {functions_.apply(Opcode::Min, {below.number, value.number}, {}),
+               surface_of(vm::info(Opcode::Min), below, value)};
+    }
     push(std::move(value));
   }
 
   void function(const OpcodeInfo& row, std::uint32_t word, const Immediates& immediates) {
     const vm::Sources sources = vm::sources_of(word);
     // An operand b on the stack is the top value. A constant operand a is the first constant.
-    std::vector<Expression> operands;
     const bool stack = row.form == Form::Binary && sources.b == vm::Source::Stack;
-    const Expression top = stack ? pop() : Expression{};
-    operands.push_back(operand(sources.a, sources.local));
-    if (row.form == Form::Binary) operands.push_back(stack ? top : operand(sources.b, sources.local));
-    push(functions_.apply(row.opcode, operands, immediates));
+    const Value top = stack ? pop() : Value{};
+    const Value a = operand(sources.a, sources.local);
+    if (row.form == Form::Unary) return push({functions_.apply(row.opcode, {a.number}, immediates), a.surface});
+    const Value b = stack ? top : operand(sources.b, sources.local);
+    push({functions_.apply(row.opcode, {a.number, b.number}, immediates), surface_of(row, a, b)});
   }
 
   void ternary(const OpcodeInfo& row, const Immediates& immediates) {
-    Expression c = pop(), b = pop(), a = pop();
-    push(functions_.apply(row.opcode, {std::move(a), std::move(b), std::move(c)}, immediates));
+    const Value c = pop(), b = pop(), a = pop();
+    push({functions_.apply(row.opcode, {a.number, b.number, c.number}, immediates), a.surface});
   }
 
-  Expression operand(vm::Source source, std::uint32_t local) {
+  // Returns the surface to which the value of a Binary belongs: that of the operand chosen, or that of the first.
+  std::string surface_of(const OpcodeInfo& row, const Value& a, const Value& b) const {
+    if (a.surface == b.surface || row.choice == vm::Choice::None || result_ != Result::Surface) return a.surface;
+    const std::string &x = a.number.text, &y = b.number.text;
+    switch (row.choice) {
+      case vm::Choice::Lesser:
+        return chosen(x, y, a.surface, b.surface);
+      case vm::Choice::Greater:
+        return chosen(y, x, a.surface, b.surface);
+      case vm::Choice::Carve:
+        return chosen(y.starts_with('-') ? fmt::format("-({})", y) : '-' + y, x, a.surface, b.surface);
+      default:  // Either: the lesser of both, or minus the greater
+        return chosen(fmt::format("min({}, {})", y, x), fmt::format("-max({}, {})", y, x),
+                      chosen(y, x, a.surface, b.surface), chosen(x, y, a.surface, b.surface));
+    }
+  }
+
+  Value operand(vm::Source source, std::uint32_t local) {
     switch (source) {
       case vm::Source::Stack:
         return pop();
       case vm::Source::Constant:
-        return language_.number(language_.literal(program_.doubles[leading_++]));
+        return {language_.number(language_.literal(program_.doubles[leading_++]))};
       case vm::Source::Local:
         return locals_[local];
       default:
-        return {points_.back().text + '.' + " xyz"[static_cast<std::size_t>(source)]};
+        return {{points_.back().text + '.' + " xyz"[static_cast<std::size_t>(source)]}};
     }
   }
 
-  // Instructions that tell surfaces apart do not affect the distance.
   void machine(const OpcodeInfo& row, std::uint32_t word) {
+    const std::uint32_t operand = vm::operand_of(word);
     if (row.opcode == Opcode::Drop) points_.pop_back();
-    if (row.opcode == Opcode::Tee) locals_[vm::operand_of(word)] = values_.back();
-    if (row.opcode == Opcode::Load) values_.push_back(locals_[vm::operand_of(word)]);
+    if (row.opcode == Opcode::Tee) locals_[operand] = values_.back();
+    if (row.opcode == Opcode::Load) values_.push_back(locals_[operand]);
+    if (row.opcode == Opcode::Tag) values_.back().surface = std::to_string(operand);
   }
 
-  Expression pop() {
-    Expression top = std::move(values_.back());
+  Value pop() {
+    Value top = std::move(values_.back());
     values_.pop_back();
     return top;
   }
-  // A coordinate or a constant needs no name.
-  void push(Expression value) {
-    const bool plain = value.text.find_first_of(" (,") == value.text.npos || value.text.starts_with("number(");
-    values_.push_back(plain ? std::move(value) : name_value(value));
+  void push(Value value) {
+    value = named(value);
+    // A choice between surfaces has a name, because several later choices may use its text.
+    if (value.surface.front() == '(') {
+      const std::string name = fmt::format("s{}", ++surface_names_);
+      out_ += fmt::format("  {}int {} = {};\n", language_.constant, name,
+                          value.surface.substr(1, value.surface.size() - 2));
+      value.surface = name;
+    }
+    values_.push_back(std::move(value));
+  }
+  // Returns the value with its number in a named one. A coordinate or a constant needs no name.
+  Value named(const Value& value) {
+    const std::string& text = value.number.text;
+    const bool plain = text.find_first_of(" (,") == text.npos || text.starts_with("number(");
+    return plain ? value : Value{name_value(value.number), value.surface};
   }
   Expression name_value(const Expression& value) {
     return line(language_.number_type, fmt::format("d{}", ++value_names_), value, comment_);
@@ -149,22 +197,32 @@ class ProgramPrinter {
   const Language& language_;
   const vm::Program& program_;
   FunctionLibrary& functions_;
-  std::vector<Expression> points_, values_, locals_;
+  const Result result_;
+  std::vector<Expression> points_;
+  std::vector<Value> values_, locals_;
   std::size_t at_ = 0, leading_ = 0;
   std::string out_;
   std::string comment_;  // the instruction's symbol, if the scene gives it a name
-  int value_names_ = 0, point_names_ = 0;
+  int value_names_ = 0, point_names_ = 0, surface_names_ = 0;
 };
 
 }  // namespace
 
 std::string print_program(const Language& language, const vm::VerifiedProgram& program, const glm::dvec3& origin,
-                          FunctionLibrary& functions) {
-  return ProgramPrinter(language, program.program(), functions).print(origin);
+                          FunctionLibrary& functions, Result result) {
+  return ProgramPrinter(language, program.program(), functions, result).print(origin);
 }
 
 std::string describe(const CompiledScene& scene) {
   return comment_text(fmt::format("{}: {}", scene.source.name(), scene.summary));
+}
+
+std::string list_surfaces(const CompiledScene& scene) {
+  std::string lines;
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    lines += fmt::format("//     {}  {}\n", i, comment_text(scene.surfaces[i].name));
+  }
+  return lines;
 }
 
 }  // namespace fathom::compiler

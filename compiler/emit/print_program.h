@@ -9,12 +9,18 @@
 
 namespace fathom::compiler {
 
+// What a printed function returns: the distance, or the number of the surface to which it belongs, an int that
+// CompiledScene::surfaces has as its index.
+enum class Result { Distance, Surface };
+
 // Returns the lines between the braces of a function of the point `p`, in scene coordinates. `origin` is the
 // program's zero in scene coordinates. Adds the functions that the lines call to `functions`.
 std::string print_program(const Language& language, const vm::VerifiedProgram& program, const glm::dvec3& origin,
-                          FunctionLibrary& functions);
+                          FunctionLibrary& functions, Result result);
 
 // Describes the scene's file and its field, for a comment of one line.
 std::string describe(const CompiledScene& scene);
+// Lists the numbers and names of the scene's surfaces, for comments of a line each.
+std::string list_surfaces(const CompiledScene& scene);
 
 }  // namespace fathom::compiler

@@ -19,6 +19,7 @@ constexpr const char* kEmitExamples =
     "fathom emit cpp scene.json --namespace wall   # wall::distance(x, y, z)\n"
     "fathom emit glsl scene.json > scene.glsl      # scene_distance(p)\n"
     "fathom emit glsl scene.json --name wall       # wall_distance(p)\n"
+    "fathom emit glsl scene.json --surfaces        # scene_surface(p), too\n"
     "\n"
     "The C++ function is a template; the head of the file lists what a type needs apart from float and double. The "
     "text\n"
@@ -31,6 +32,7 @@ struct EmitRequest {
   int language = kCpp;
   SceneArguments scene;
   std::optional<std::string> output, name_space, name;
+  bool surfaces = false;
 };
 
 // Makes a Setter that accepts a name unless `problem_with` returns a problem.
@@ -55,6 +57,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    identifier(compiler::problem_with_namespace, request.name_space));
   arguments.option("--name", "NAME", "glsl: prefix of all names (scene)",
                    identifier(compiler::problem_with_glsl_name, request.name));
+  arguments.flag("--surfaces", "glsl: also print a function that returns the surface at a point", request.surfaces);
   if (const auto code = arguments.parse(args, streams)) return code;
   if (const OptionResult wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
     return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem),
@@ -65,6 +68,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   }
   if (request.language == kCpp && request.name) {
     return fail(streams, kUsage, "--name is about GLSL", {"use --namespace"});
+  }
+  if (request.language == kCpp && request.surfaces) {
+    return fail(streams, kUsage, "--surfaces is about GLSL", {"leave it out, or emit glsl"});
   }
   if (!request.output) return std::nullopt;
   if (const auto code = check_collisions(request.scene.path, {*request.output}, streams)) return code;
@@ -83,7 +89,7 @@ int run_emit(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   const std::string text = request.language == kGlsl
-                               ? compiler::emit_glsl(scene, request.name.value_or("scene"))
+                               ? compiler::emit_glsl(scene, request.name.value_or("scene"), request.surfaces)
                                : compiler::emit_cpp(scene, request.name_space.value_or("fathom_scene"));
   if (!request.output) {
     streams.out << text;

@@ -84,6 +84,21 @@ void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
+// Adds, of every choice, a program whose operands belong to different surfaces.
+void add_choices(std::vector<EmittedProgram>& programs, Random& random) {
+  for (int i = 0; i < vm::kOpcodeCount; ++i) {
+    const vm::OpcodeInfo& row = vm::info(static_cast<Opcode>(i));
+    if (row.form != Form::Binary || row.choice == vm::Choice::None) continue;
+    vm::Program program;
+    program.append(Opcode::Sphere, 0, {0.9}, {});
+    program.append(Opcode::Tag, 2, {}, {});
+    program.append(Opcode::Box, 0, {1.4, 0.4, 0.6}, {});
+    program.append(Opcode::Tag, 1, {}, {});
+    program.append(row.opcode, 0, random_immediates(row, vm::opcode_word(row.opcode), random), {});
+    programs.push_back(named(fmt::format("choice_{}", row.mnemonic), std::move(program)));
+  }
+}
+
 // Adds programs with nested points, locals and tags; loops with immediates that keep the loops running; and a scene
 // far from the origin.
 void add_others(std::vector<EmittedProgram>& programs) {
@@ -138,6 +153,7 @@ std::vector<EmittedProgram> emitted_programs() {
   Random random(41);
   add_opcodes(programs, random);
   add_operands(programs, random);
+  add_choices(programs, random);
   add_others(programs);
   add_random_scenes(programs);
   return programs;

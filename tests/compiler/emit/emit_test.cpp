@@ -48,6 +48,18 @@ float two_distance(vec3 p) {
 )");
 }
 
+TEST_CASE("emitted GLSL tells surfaces apart", "[emit]") {
+  CHECK(tail(compiler::emit_glsl(compiled_objects(kTwoShapes), "two", true), "int two_surface") ==
+        R"(int two_surface(vec3 p) {
+  float d1 = two_sphere(two_translate(p, 1.0, 2.0, 3.0), 0.9);  // sphere "ball"
+  float d2 = two_box(p, 0.7, 0.8, 0.6);
+  float d3 = min(d2, d1);
+  int s1 = d1 < d2 ? 0 : d2 < d1 ? 1 : min(0, 1);
+  return s1;
+}
+)");
+}
+
 TEST_CASE("emitted C++ reads as one writes it", "[emit]") {
   CHECK(tail(compiler::emit_cpp(compiled_objects(kTwoShapes), "two"), "static FATHOM_SCENE_INLINE T distance") ==
         R"(static FATHOM_SCENE_INLINE T distance([[maybe_unused]] vec3 p) {

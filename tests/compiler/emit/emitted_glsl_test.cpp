@@ -31,8 +31,8 @@ bool has_elementary(const std::string& text) {
 std::string shader(const std::string& version) {
   std::string text = "#version " + version + "\nprecision highp float;\nout vec4 colour;\n", sum;
   for (const EmittedProgram& program : emitted_programs()) {
-    text += compiler::emit_glsl(program.scene, program.name);
-    sum += "  d += " + program.name + "_distance(colour.xyz);\n";
+    text += compiler::emit_glsl(program.scene, program.name, true);
+    sum += "  d += " + program.name + "_distance(colour.xyz) + float(" + program.name + "_surface(colour.xyz));\n";
   }
   for (const char* path : {"scenes/showcase.json", "scenes/bench/b-csg.json", "scenes/bench/e-gyroid.json",
                            "scenes/bench/h-composite.json", "scenes/mandelbulb.json", "tests/data/molecule.json"}) {
@@ -65,13 +65,14 @@ TEST_CASE("emitted GLSL computes what the machine does", "[emit]") {
   const auto programs = emitted_programs();
   REQUIRE(programs.size() == std::size(kEmittedGlsl));
   vm::Workspace workspace;
+  std::size_t surfaces_seen = 0;
   for (std::size_t i = 0; i < programs.size(); ++i) {
     const compiler::CompiledScene& scene = programs[i].scene;
     CAPTURE(programs[i].name);
     REQUIRE(programs[i].name == kEmittedGlsl[i].name);
     const bool exact = !has_elementary(compiler::emit_glsl(scene, "scene"));
     Random random(i);
-    std::size_t wrong = 0;
+    std::size_t wrong = 0, wrong_surfaces = 0;
     for (int n = 0; n < 2000; ++n) {
       const glm::vec3 p(random.in_box(2)), q = p - glm::vec3(scene.origin);
       float machine;
@@ -80,9 +81,16 @@ TEST_CASE("emitted GLSL computes what the machine does", "[emit]") {
       const float allowed = exact ? 0 : 2e-5f * std::max(1.f, std::fabs(machine));
       const bool both_nan = std::isnan(glsl) && std::isnan(machine);
       wrong += !both_nan && !(glsl == machine) && !(std::fabs(glsl - machine) <= allowed);
+      std::uint32_t surface;
+      float d, gx, gy, gz;
+      vm::evaluate_surface(scene.surface, {&q.x, &q.y, &q.z}, 1, {&d, &gx, &gy, &gz, &surface, nullptr}, workspace);
+      wrong_surfaces += exact && kEmittedGlsl[i].surface(p) != static_cast<int>(surface);
+      surfaces_seen += surface > 0;
     }
     CHECK(wrong == 0);
+    CHECK(wrong_surfaces == 0);
   }
+  CHECK(surfaces_seen > 20000);
 }
 
 }  // namespace fathom::test::emitted_glsl_test
