@@ -9,8 +9,8 @@
 
 namespace fathom::compiler {
 
-// What a printed function returns: the distance, or the number of the surface to which it belongs, an int that
-// CompiledScene::surfaces has as its index.
+// The result of a printed function: the distance, or the number of the surface to which it belongs, an int that is
+// its index in CompiledScene::surfaces.
 enum class Result { Distance, Surface };
 
 // Returns the lines between the braces of a function of the point `p`, in scene coordinates. `origin` is the

@@ -1,4 +1,4 @@
-// fathom emit: the scene's distance function as C++ or GLSL.
+// fathom emit: the scene's distance function as C++ or GLSL, or a page that draws it.
 // Tested by: tests/runtime/cli/cli_emit_test.cpp
 #include "compiler/emit/emit.h"
 
@@ -10,6 +10,7 @@
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/live/live_page.h"
 
 namespace fathom::cli {
 namespace {
@@ -20,13 +21,14 @@ constexpr const char* kEmitExamples =
     "fathom emit glsl scene.json > scene.glsl      # scene_distance(p)\n"
     "fathom emit glsl scene.json --name wall       # wall_distance(p)\n"
     "fathom emit glsl scene.json --surfaces        # scene_surface(p), too\n"
+    "fathom emit html scene.json -o scene.html     # open it in a browser\n"
     "\n"
     "The C++ function is a template; the head of the file lists what a type needs apart from float and double. The "
     "text\n"
     "is as long as the listing of `fathom dump`. For ten thousand objects a compiler takes minutes, and a graphics\n"
     "driver may refuse it.";
 
-enum Language { kCpp, kGlsl };
+enum Language { kCpp, kGlsl, kHtml };
 
 struct EmitRequest {
   int language = kCpp;
@@ -47,10 +49,12 @@ Setter identifier(std::string (*problem_with)(std::string_view), std::optional<s
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, EmitRequest& request) {
-  Arguments arguments("emit", "Writes the scene's distance function as C++ or GLSL.", kEmitExamples);
+  Arguments arguments("emit", "Writes the scene's distance function as C++ or GLSL, or a page that draws it.",
+                      kEmitExamples);
   std::string language;
-  arguments.positional("language", "cpp: a C++17 header; glsl: functions for a shader", language, true, "LANGUAGE",
-                       {"cpp", "glsl"});
+  arguments.positional("language",
+                       "cpp: a C++17 header; glsl: functions for a shader; html: a page that draws the scene live",
+                       language, true, "LANGUAGE", {"cpp", "glsl", "html"});
   add_scene_arguments(arguments, request.scene);
   arguments.option("-o,--output", "FILE", "File to write (standard output)", any_text(request.output));
   arguments.option("--namespace", "NAME", "cpp: namespace of the function (fathom_scene)",
@@ -59,23 +63,34 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    identifier(compiler::problem_with_glsl_name, request.name));
   arguments.flag("--surfaces", "glsl: also print a function that returns the surface at a point", request.surfaces);
   if (const auto code = arguments.parse(args, streams)) return code;
-  if (const OptionResult wrong = one_of({"cpp", "glsl"}, request.language)(language)) {
+  if (const OptionResult wrong = one_of({"cpp", "glsl", "html"}, request.language)(language)) {
     return fail(streams, kUsage, fmt::format("unknown language: {}", wrong->problem),
-                {wrong->help.empty() ? "there are cpp and glsl" : wrong->help});
+                {wrong->help.empty() ? "there are cpp, glsl and html" : wrong->help});
   }
-  if (request.language == kGlsl && request.name_space) {
-    return fail(streams, kUsage, "GLSL has no namespaces", {"use --name"});
+  if (request.language != kCpp && request.name_space) {
+    return fail(streams, kUsage, "--namespace is about C++", {"use --name for GLSL"});
   }
-  if (request.language == kCpp && request.name) {
-    return fail(streams, kUsage, "--name is about GLSL", {"use --namespace"});
+  if (request.language != kGlsl && request.name) {
+    return fail(streams, kUsage, "--name is about GLSL", {"use --namespace for C++"});
   }
-  if (request.language == kCpp && request.surfaces) {
+  if (request.language != kGlsl && request.surfaces) {
     return fail(streams, kUsage, "--surfaces is about GLSL", {"leave it out, or emit glsl"});
   }
   if (!request.output) return std::nullopt;
   if (const auto code = check_collisions(request.scene.path, {*request.output}, streams)) return code;
   if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
   return std::nullopt;
+}
+
+std::string text_of(const compiler::CompiledScene& scene, const EmitRequest& request) {
+  switch (request.language) {
+    case kGlsl:
+      return compiler::emit_glsl(scene, request.name.value_or("scene"), request.surfaces);
+    case kHtml:
+      return runtime::live_page(scene);
+    default:
+      return compiler::emit_cpp(scene, request.name_space.value_or("fathom_scene"));
+  }
 }
 
 }  // namespace
@@ -88,9 +103,7 @@ int run_emit(std::span<const std::string> args, const Streams& streams) {
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
-  const std::string text = request.language == kGlsl
-                               ? compiler::emit_glsl(scene, request.name.value_or("scene"), request.surfaces)
-                               : compiler::emit_cpp(scene, request.name_space.value_or("fathom_scene"));
+  const std::string text = text_of(scene, request);
   if (!request.output) {
     streams.out << text;
     return kDone;

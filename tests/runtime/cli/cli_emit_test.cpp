@@ -25,6 +25,7 @@ TEST_CASE("emit writes a header or a shader's functions", "[cli][emit]") {
   const std::string surfaces = folder.run("emit glsl ball.json --surfaces").out;
   CHECK(contains(surfaces, "\nint scene_surface(vec3 p) {"));
   CHECK(contains(surfaces, "\n//     0  "));
+  CHECK(folder.run("emit html ball.json").out.starts_with("<!doctype html>"));
   CHECK(contains(folder.run("emit glsl - --name ball", kBall).out, "\nfloat ball_distance(vec3 p) {"));
 }
 
@@ -41,6 +42,7 @@ TEST_CASE("emit says what it cannot do", "[cli][emit]") {
   refused("ball.json", 2, "scene");
   refused("cpp ball.json --name x", 2, "use --namespace");
   refused("glsl ball.json --namespace x", 2, "use --name");
+  refused("html ball.json --name x", 2, "--name is about GLSL");
   refused("cpp ball.json --surfaces", 2, "emit glsl");
   refused("cpp ball.json --namespace 1x", 2, "a namespace is made of letters");
   refused("cpp ball.json --namespace class", 2, "a word of C++ itself");

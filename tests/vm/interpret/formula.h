@@ -132,7 +132,7 @@ inline void append_cells(Random& random, std::vector<Step>& steps) {
   if (random.chance(0.4)) steps.push_back({Opcode::Sqrt});
 }
 
-// Appends a random tree of smooth unions by exponentials, their kin and hard unions, over distances from axes and
+// Appends a random tree of smooth unions by exponentials, similar ones and hard unions, over distances from axes and
 // planes.
 inline void append_exponentials(Random& random, int size, std::vector<Step>& steps) {
   static const vm::Opcode kAxes[] = {vm::Opcode::X, vm::Opcode::Y, vm::Opcode::Z};

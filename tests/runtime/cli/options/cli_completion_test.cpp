@@ -77,7 +77,7 @@ TEST_CASE("cli: the scripts for zsh and fish are ones, and name every option of 
   CHECK(zsh.starts_with("#compdef fathom\n"));
   CHECK_THAT(zsh, Contains("'render:renders the scene to image files'") && Contains("'*--tone=[") &&
                       Contains(":CURVE:(none filmic aces agx neutral)'") && Contains("'1:scene:_files'") &&
-                      Contains("'1:language:(cpp glsl)'"));
+                      Contains("'1:language:(cpp glsl html)'"));
   CHECK_THAT(fish, Contains("complete -c fathom -n '__fish_seen_subcommand_from render' -s s -l spp -x -d ") &&
                        Contains("-l tone -x -a 'none filmic aces agx neutral'"));
   std::istringstream help(folder.run("help render").out);

@@ -1,0 +1,85 @@
+// The live page: what it holds, and that no name of a scene gets out of its place in it. That browsers draw it is a
+// matter of a browser.
+#include "runtime/live/live_page.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/compiled.h"
+
+namespace fathom::test::live_page_test {
+namespace {
+
+using nlohmann::json;
+
+// Returns the text between `begin` and the next `end`.
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t at = text.find(begin);
+  REQUIRE(at != text.npos);
+  const std::size_t first = at + begin.size();
+  return text.substr(first, text.find(end, first) - first);
+}
+
+json scene_of(const std::string& page) {
+  return json::parse(between(page, "<script type=\"application/json\" id=\"scene\">", "</script>"));
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+constexpr const char* kScene = R"({"version": 1,
+  "materials": {"metal": {"type": "principled", "base_color": [0.1, 0.2, 0.3], "roughness": 0.4, "metalness": 1},
+                "glow": {"type": "emissive", "emission": [4, 4, 4]}},
+  "objects": [{"name": "ball", "type": "sphere", "radius": 0.5, "translate": [1, 0, 0], "material": "metal"},
+              {"name": "lamp", "type": "sphere", "radius": 0.1, "translate": [0, 2, 0], "material": "glow"}],
+  "lights": {"sun": {"type": "directional", "direction": [0, -1, 0], "irradiance": [2, 2, 2]}},
+  "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 90},
+  "film": {"width": 200, "height": 100, "exposure": 1}})";
+
+}  // namespace
+
+TEST_CASE("a live page has the scene's functions, camera, materials and lights", "[live]") {
+  const std::string page = runtime::live_page(test::compiled(kScene));
+  const json scene = scene_of(page);
+  const std::string shader = scene["shader"];
+  CHECK(count(shader, "float scene_distance(vec3 p) {") == 1);
+  CHECK(count(shader, "int scene_surface(vec3 p) {") == 1);
+  CHECK(count(shader, "const int kSurfaces = 2;") == 1);
+  CHECK(scene["exposure"] == 2);
+  CHECK(scene["camera"]["position"] == json({0, 0, 5}));
+  CHECK(scene["camera"]["half"][0].get<double>() == Approx(1));
+  CHECK(scene["camera"]["half"][1].get<double>() == Approx(0.5));
+  REQUIRE(scene["surfaces"].size() == 2);
+  CHECK(scene["surfaces"][0]["name"] == "ball");
+  CHECK(scene["surfaces"][0]["color"] == json({0.1, 0.2, 0.3}));
+  CHECK(scene["surfaces"][0]["metalness"] == 1);
+  CHECK(scene["surfaces"][1]["emission"] == json({4, 4, 4}));
+  REQUIRE(scene["lights"].size() == 2);
+  CHECK(scene["lights"][0]["at"] == json({0, 1, 0, 0}));
+  CHECK(scene["lights"][1]["at"] == json({0, 2, 0, 1}));
+  CHECK(scene["lights"][1]["power"][0].get<double>() == Approx(4 * 3.14159265 * 0.01));
+  REQUIRE(scene["bound"].is_array());
+  CHECK(scene["bound"][1][0].get<double>() >= 1.5);
+}
+
+TEST_CASE("a live page of an unbounded scene has no box", "[live]") {
+  const std::string page = runtime::live_page(compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]})"));
+  CHECK(scene_of(page)["bound"].is_null());
+}
+
+TEST_CASE("no name of a scene ends its element in a live page", "[live]") {
+  const std::string hostile = "</script><script>alert(1)</script><!--*/ \\\" '";
+  const std::string page = runtime::live_page(
+      compiled_objects("{\"name\": \"" + hostile + "\", \"type\": \"sphere\", \"radius\": 1}"));
+  CHECK(count(page, "<script") == 2);
+  CHECK(count(page, "</script") == 2);
+  CHECK(count(page, "<!--") == 0);
+  CHECK(scene_of(page)["surfaces"][0]["name"].get<std::string>().starts_with("</script>"));
+}
+
+}  // namespace fathom::test::live_page_test
