@@ -107,8 +107,9 @@ std::vector<json> lights_of(const CompiledScene& scene) {
     lights.push_back(
         light_of(directional ? -light.direction : light.position + scene.origin, !directional, light.intensity));
   }
-  if (scene.background.type == compiler::Background::Type::Sky) {
-    lights.push_back(light_of(scene.background.sky.sun, false, dvec3(Sky(scene.background.sky).sun_irradiance())));
+  const compiler::Background::Sky& sky = scene.background.sky;
+  if (scene.background.type == compiler::Background::Type::Sky && sky.sun_disc) {
+    lights.push_back(light_of(sky.sun, false, dvec3(Sky(sky).sun_irradiance())));
   }
   for (const AreaLight& light : scene.area_lights) {
     const Material& material = scene.materials[light.material];

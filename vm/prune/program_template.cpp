@@ -23,7 +23,7 @@ struct Step {
 
 constexpr std::array<bool, kOpcodeCount> kPolymorphicRows = {
 #define OP(Name, mnemonic, form, immediates, choice, cost, ...) \
-  Form::form == Form::Shape &&can_be_polymorphic(immediates, cost),
+  can_be_polymorphic(immediates, cost) && Form::form == Form::Shape,
 #include "vm/program/opcodes.def"
 #undef OP
 };
