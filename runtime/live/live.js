@@ -70,10 +70,13 @@ function zoom(factor) {
   if (camera.orthographic) camera.half = scaled(camera.half, factor);
 }
 
-// The camera as a record of the scene's text.
+// The camera as a statement of the scene's text.
 function cameraText() {
-  const list = a => "[" + a.map(x => Number(x.toPrecision(6))).join(", ") + "]";
-  return `camera { position = ${list(camera.position)}, target = ${list(camera.target)} }`;
+  const number = x => Number(x.toPrecision(6)), list = a => "[" + a.map(number).join(", ") + "]";
+  const [x, y, z] = camera.up, up = x === 0 && y === 1 && z === 0 ? "" : `, up = ${list(camera.up)}`;
+  const size = camera.orthographic ? `, type = "orthographic", width = ${number(2 * camera.half[0])}`
+                                   : `, fov = ${number(Math.atan(camera.half[0]) * 360 / Math.PI)}`;
+  return `camera (position = ${list(camera.position)}, target = ${list(camera.target)}${up}${size})`;
 }
 
 // coarse: share of the canvas's pixels along each axis that is drawn while the camera moves.
@@ -104,7 +107,8 @@ function setScene() {
   });
 }
 
-// Draws a sample per pixel, the number `sample` of those that the canvas holds the mean of.
+// Draws a sample per pixel, the number `sample` of those that the canvas holds the mean of. Their places in the pixel
+// are Roberts' sequence ("The Unreasonable Effectiveness of Quasirandom Sequences", 2018), after the middle.
 function draw(scale, sample) {
   const ratio = window.devicePixelRatio * scale, box = canvas.getBoundingClientRect();
   const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
@@ -135,7 +139,6 @@ function redraw(sample = 0) {
     const took = performance.now() - start;
     if (moving) coarse = Math.min(1, Math.max(0.125, coarse * Math.sqrt(25 / Math.max(took, 5))));
     else if (sample + 1 < kSamples) redraw(sample + 1);
-    else document.body.dataset.ready = "true";
   });
 }
 

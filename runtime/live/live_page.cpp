@@ -35,12 +35,16 @@ constexpr double kFar = 100;
 
 json list(dvec3 v) { return {v.x, v.y, v.z}; }
 
-json camera_of(const CompiledScene& scene) {
+compiler::Camera placed_camera(const CompiledScene& scene) {
   const double width = scene.film.width, height = scene.film.height;
   compiler::Camera camera = compiler::placed(scene.camera, scene.extent, width / height);
   if (camera.projection == compiler::Camera::Projection::Panorama) {
     camera.projection = compiler::Camera::Projection::Perspective;
   }
+  return camera;
+}
+
+json camera_of(const CompiledScene& scene, const compiler::Camera& camera) {
   const Camera axes(camera, scene.film.width, scene.film.height);
   return {{"position", list(camera.position + scene.origin)},
           {"target", list(camera.target + scene.origin)},
@@ -140,8 +144,7 @@ std::string shader_of(const CompiledScene& scene, std::size_t lights) {
 
 json scene_of(const CompiledScene& scene, const std::vector<json>& lights) {
   const auto [bottom, top] = background_of(scene.background);
-  const json camera = camera_of(scene);
-  const double distance = glm::length(scene.camera.target - scene.camera.position);
+  const compiler::Camera camera = placed_camera(scene);
   json surfaces = json::array();
   for (const compiler::Surface& surface : scene.surfaces) surfaces.push_back(surface_of(scene, surface));
   json bound;
@@ -149,13 +152,13 @@ json scene_of(const CompiledScene& scene, const std::vector<json>& lights) {
     bound = {list(scene.bound.lo + scene.origin), list(scene.bound.hi + scene.origin)};
   }
   return {{"summary", scene.summary},
-          {"camera", camera},
+          {"camera", camera_of(scene, camera)},
           {"bottom", list(bottom)},
           {"top", list(top)},
           {"lights", lights},
           {"bound", bound},
           {"surfaces", surfaces},
-          {"far", kFar * distance},
+          {"far", kFar * glm::length(camera.target - camera.position)},
           {"exposure", std::exp2(scene.film.exposure)},
           {"shader", shader_of(scene, lights.size())}};
 }

@@ -72,6 +72,13 @@ TEST_CASE("a live page of an unbounded scene has no box", "[live]") {
   CHECK(scene_of(page)["bound"].is_null());
 }
 
+// Rays ended before a large scene: a hundred times the distance of a camera that had not been placed yet.
+TEST_CASE("rays of a live page reach the scene that its camera frames", "[live]") {
+  const json scene = scene_of(runtime::live_page(compiled_objects(R"({"type": "sphere", "radius": 10000})")));
+  CHECK(scene["camera"]["position"][2].get<double>() > 10000);
+  CHECK(scene["far"].get<double>() > 2 * scene["camera"]["position"][2].get<double>());
+}
+
 TEST_CASE("no name of a scene ends its element in a live page", "[live]") {
   const std::string hostile = "</script><script>alert(1)</script><!--*/ \\\" '";
   const std::string page = runtime::live_page(
