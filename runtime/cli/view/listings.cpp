@@ -1,0 +1,73 @@
+#include "runtime/cli/view/listings.h"
+
+#include <sstream>
+
+#include "compiler/analysis/report.h"
+#include "compiler/pass_diff.h"
+#include "compiler/shapes/print_graph.h"
+#include "runtime/cli/check_report.h"
+#include "runtime/cli/dump/region_listing.h"
+#include "runtime/cli/dump/trace_listing.h"
+
+namespace fathom::cli {
+namespace {
+
+// Compiles the scene's text again with `options`, which collect what is wanted on the way.
+Listing compile_again(const LoadedScene& loaded, compiler::CompileOptions options) {
+  std::istringstream in;
+  std::ostringstream out, err;
+  options.stage = true;
+  const auto compiled = compile_scene({loaded.input.source, std::nullopt}, loaded.arguments, {in, out, err}, options);
+  if (std::holds_alternative<ExitCode>(compiled)) return {422, std::move(err).str()};
+  return {200, ""};
+}
+
+Listing list_passes(const LoadedScene& loaded) {
+  compiler::PassDiff diff(loaded.scene().source);
+  compiler::CompileOptions options;
+  options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) { diff.add(pass, scene); };
+  Listing listing = compile_again(loaded, std::move(options));
+  if (listing.status != 200) return listing;
+  diff.add_fused(loaded.scene().distance);
+  return {200, diff.text()};
+}
+
+Listing list_graph(const LoadedScene& loaded, std::string_view wanted) {
+  compiler::Scene first, last;
+  compiler::CompileOptions options;
+  options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) {
+    last = scene;
+    if (pass == "graph") first = scene;
+  };
+  Listing listing = compile_again(loaded, std::move(options));
+  if (listing.status != 200) return listing;
+  if (wanted == "graph") return {200, print_graph(last, loaded.scene().source)};
+  return {200, report_text(loaded.scene(), make_report(first, loaded.scene().surfaces))};
+}
+
+Listing list_run(const compiler::CompiledScene& scene, glm::dvec3 point) {
+  if (trace_work(scene.surface) > kMaxTraceWork) {
+    return {422, "the program is too long to be run once for each of its instructions"};
+  }
+  return {200, trace_listing(scene.surface, point - scene.origin)};
+}
+
+Listing list_region(const compiler::CompiledScene& scene, glm::dvec3 point) {
+  if (auto text = region_listing(scene, point)) return {200, std::move(*text)};
+  return {422, "the scene has no regions: it has no bounded part, or its program cannot be divided"};
+}
+
+}  // namespace
+
+Listing make_listing(const LoadedScene& loaded, std::string_view kind, std::optional<glm::dvec3> point) {
+  const bool has_text = !loaded.input.source.text().empty();
+  if (kind == "passes" || kind == "graph" || kind == "check") {
+    if (!has_text) return {422, "the file holds programs without the scene they were compiled from"};
+    return kind == "passes" ? list_passes(loaded) : list_graph(loaded, kind);
+  }
+  if (kind != "run" && kind != "region") return {400, "kind is one of passes, graph, check, run, region"};
+  if (!point) return {400, "at=X,Y,Z is missing"};
+  return kind == "run" ? list_run(loaded.scene(), *point) : list_region(loaded.scene(), *point);
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,77 @@
+#include "runtime/cli/view/picture_files.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "runtime/chart/colormap.h"
+#include "runtime/denoise/denoise.h"
+#include "runtime/film/film_layers.h"
+#include "runtime/image/image_io.h"
+
+namespace fathom::cli {
+namespace {
+
+using runtime::Layer;
+
+constexpr int kFewSamples = 32;
+
+std::optional<Layer> find_layer(std::string_view name) {
+  if (name == "color") return Layer::Beauty;
+  for (const runtime::LayerInfo& row : runtime::kLayers) {
+    if (row.name == name && !is_light(row.layer)) return row.layer;
+  }
+  return std::nullopt;
+}
+
+// Returns the map of a cost, logarithmic from dark violet to yellow; black where there is none.
+Bytes cost_file(const runtime::Film& film, double runtime::PixelMeans::*value) {
+  const runtime::PixelRect area = film.area();
+  std::vector<float> values;
+  values.reserve(area.pixels());
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*value));
+  }
+  const runtime::ColorScale scale = runtime::scale_for(values, true);
+  runtime::ByteImage image{film.width(), film.height(), {}};
+  for (const float each : values) {
+    const runtime::Rgb color = scale.color(static_cast<double>(each));
+    image.rgb.insert(image.rgb.end(), color.begin(), color.end());
+  }
+  return encode_image(image, runtime::ImageFormat::Png);
+}
+
+}  // namespace
+
+Bytes mask_file(const std::vector<bool>& pixels, int width, int height) {
+  runtime::ByteImage image{width, height, {}};
+  for (const bool pixel : pixels) image.rgb.insert(image.rgb.end(), 3, pixel ? 255 : 0);
+  return encode_image(image, runtime::ImageFormat::Png);
+}
+
+Bytes PictureFiles::encode(const std::shared_ptr<const Picture>& picture, std::string_view layer, double exposure,
+                           Denoise denoise) {
+  if (layer == "evaluations") return cost_file(picture->film, &runtime::PixelMeans::evaluations);
+  if (layer == "instructions") return cost_file(picture->film, &runtime::PixelMeans::instructions);
+  const std::optional<Layer> found = find_layer(layer);
+  if (!found) return {};
+  const compiler::Film& film = picture->scene->scene().film;
+  const runtime::ToneMapping tone{std::clamp(film.exposure + exposure, -100.0, 100.0), film.tone};
+  const bool is_wanted = denoise == Denoise::On || (denoise == Denoise::Auto && picture->samples < kFewSamples);
+  if (*found == Layer::Beauty && is_wanted && picture->samples >= 2) {
+    return encode_image(layer_image(*denoised(picture), *found, tone), runtime::ImageFormat::Png);
+  }
+  return encode_image(layer_image(picture->film, *found, tone), runtime::ImageFormat::Png);
+}
+
+std::shared_ptr<const runtime::Film> PictureFiles::denoised(const std::shared_ptr<const Picture>& picture) {
+  const std::lock_guard lock(mutex_);
+  if (number_ != picture->number) {
+    auto film = std::make_shared<runtime::Film>(picture->film);
+    runtime::denoise(*film, threads_);
+    denoised_ = std::move(film);
+    number_ = picture->number;
+  }
+  return denoised_;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,169 @@
+#include "runtime/cli/view/view_server.h"
+
+#include <httplib.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <utility>
+
+#include "runtime/cli/view/page_files.h"
+#include "runtime/cli/view/request_guard.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr int kThreads = 24;                // of the server; each stream of events occupies one
+constexpr int kMaxStreams = 6;              // of events
+constexpr std::size_t kMaxBody = 64 << 10;  // of a request, bytes
+constexpr int kPatience = 3;                // for a client that sends or reads nothing, seconds
+constexpr double kPing = 5;                 // seconds between events at most
+
+constexpr std::pair<const char*, const char*> kHeaders[] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self'; "
+     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cache-Control", "no-store"},
+};
+
+constexpr std::array<std::pair<std::string_view, const char*>, 3> kTypes = {{
+    {".html", "text/html; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+}};
+
+const char* type_of(std::string_view name) {
+  for (const auto& [ending, type] : kTypes) {
+    if (name.ends_with(ending)) return type;
+  }
+  return "application/octet-stream";
+}
+
+RequestFacts facts_of(const httplib::Request& request) {
+  // Two headers of one name would let a proxy and this server read different ones.
+  const auto only = [&](const char* name) {
+    return request.get_header_value_count(name) > 1 ? "?" : request.get_header_value(name);
+  };
+  return {request.method, request.path, only("Host"), only("Origin"), only("Sec-Fetch-Site"), only("Content-Type")};
+}
+
+void refuse(httplib::Response& response, const Refusal& refusal) {
+  response.status = refusal.status;
+  response.set_content(std::string(refusal.reason) + "\n", "text/plain; charset=utf-8");
+}
+
+void reply(httplib::Response& response, Answer answer) {
+  response.status = answer.status;
+  if (answer.picture > 0) response.set_header("X-Picture", std::to_string(answer.picture));
+  if (answer.status != 204) response.set_content(answer.body, answer.type);
+}
+
+}  // namespace
+
+struct ViewServer::Server {
+  ViewSession& session;
+  httplib::Server http;
+  std::optional<RequestGuard> guard;  // none if the port is not free
+  std::atomic<int> streams = 0;
+
+  Server(ViewSession& viewed, int port, const std::string& token) : session(viewed) {
+    // Without SO_REUSEPORT, which is the library's default, another program cannot listen on the same port.
+    http.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    const bool is_bound = port == 0 || http.bind_to_port("127.0.0.1", port);
+    const int bound = port == 0 ? http.bind_to_any_port("127.0.0.1") : port;
+    if (!is_bound || bound <= 0) return;
+    guard.emplace(bound, token);
+    set_limits();
+    add_routes();
+  }
+
+  void set_limits() {
+    http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    http.set_payload_max_length(kMaxBody);
+    http.set_read_timeout(kPatience);
+    http.set_write_timeout(kPatience);
+    http.set_keep_alive_timeout(kPatience);
+    http.set_tcp_nodelay(true);
+    httplib::Headers headers;
+    for (const auto& [name, value] : kHeaders) headers.emplace(name, value);
+    http.set_default_headers(headers);
+    http.set_exception_handler([](const auto&, httplib::Response& response, const std::exception_ptr&) {
+      refuse(response, {500, "the request cannot be answered"});
+    });
+    http.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      const std::optional<Refusal> refusal = guard->refuse(facts_of(request));
+      if (!refusal) return httplib::Server::HandlerResponse::Unhandled;
+      refuse(response, *refusal);
+      return httplib::Server::HandlerResponse::Handled;
+    });
+  }
+
+  void add_routes() {
+    for (const PageFile& file : page_files()) {
+      const std::string name = file.name == "index.html" ? "" : std::string(file.name);
+      std::string path = guard->root() + name;
+      http.Get(escape(path), [file](const httplib::Request&, httplib::Response& response) {
+        response.set_content(std::string(file.text), type_of(file.name));
+      });
+    }
+    http.Get(guard->root() + "events",
+             [this](const httplib::Request&, httplib::Response& response) { stream_events(response); });
+    for (const char* name : {"scene", "picture", "pixel", "pixels", "listing", "program"}) {
+      http.Get(guard->root() + name, [this, name](const httplib::Request& request, httplib::Response& response) {
+        reply(response, session.get(name, [&](const char* parameter) { return request.get_param_value(parameter); }));
+      });
+    }
+    for (const char* name : {"camera", "parameters", "keep"}) {
+      http.Post(guard->root() + name, [this, name](const httplib::Request& request, httplib::Response& response) {
+        reply(response, session.post(name, request.body));
+      });
+    }
+  }
+
+  // The library takes paths as regular expressions.
+  static std::string escape(const std::string& path) {
+    std::string pattern;
+    for (const char c : path) pattern += c == '.' ? std::string("\\.") : std::string(1, c);
+    return pattern;
+  }
+
+  void stream_events(httplib::Response& response) {
+    if (streams.fetch_add(1) >= kMaxStreams) {
+      --streams;
+      return refuse(response, {429, "too many pages are open"});
+    }
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, seen = ViewSession::Seen()](std::size_t, httplib::DataSink& sink) mutable {
+          if (session.is_over()) return false;
+          const std::string events = session.wait_for_events(seen, kPing);
+          return sink.write(events.data(), events.size());
+        },
+        [this](bool) { --streams; });
+  }
+};
+
+ViewServer::ViewServer(ViewSession& session, int port, std::string token)
+    : server_(std::make_unique<Server>(session, port, token)) {}
+
+ViewServer::~ViewServer() = default;
+
+std::optional<std::string> ViewServer::address() const {
+  return server_->guard ? std::optional(server_->guard->address()) : std::nullopt;
+}
+
+void ViewServer::run() { server_->http.listen_after_bind(); }
+
+void ViewServer::stop() {
+  server_->session.stop();
+  server_->http.stop();
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,94 @@
+#include "runtime/cli/view/viewed_scene.h"
+
+#include <sstream>
+#include <utility>
+
+namespace fathom::cli {
+namespace {
+
+// Time between polls: a change counts after two, so that it shows within a tenth of a second.
+constexpr std::chrono::milliseconds kPoll{15};
+
+// Reads and compiles the scene. `state` receives its text, and the scene if there is no error.
+void read_into(SceneState& state, const RenderRequest& request, RenderCache& cache, const Streams& streams) {
+  auto read = read_scene(request.scene, streams);
+  if (std::holds_alternative<ExitCode>(read)) return;
+  auto& input = std::get<SceneInput>(read);
+  state.text = input.source.text();
+  auto picture = prepare_render(request, input, cache, streams);
+  if (std::holds_alternative<ExitCode>(picture)) return;
+  state.good = true;
+  state.loaded = std::make_shared<const LoadedScene>(LoadedScene{
+      state.version, std::move(input), request.scene, std::get<std::unique_ptr<PreparedRender>>(std::move(picture))});
+}
+
+}  // namespace
+
+ViewedScene::ViewedScene(const RenderRequest& request, std::function<void()> on_change)
+    : request_(request), on_change_(std::move(on_change)), files_({request.scene.path}) {
+  load();
+  thread_ = std::thread([this] { run(); });
+}
+
+ViewedScene::~ViewedScene() {
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+SceneState ViewedScene::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+void ViewedScene::define(compiler::Definitions values) {
+  {
+    const std::lock_guard lock(mutex_);
+    values_ = std::move(values);
+    redefined_ = true;
+  }
+  wake_.notify_one();
+}
+
+void ViewedScene::run() {
+  std::unique_lock lock(mutex_);
+  while (!over_) {
+    const bool redefined = wake_.wait_for(lock, kPoll, [this] { return over_ || redefined_; });
+    if (over_) return;
+    lock.unlock();
+    if (redefined || files_.settled()) {
+      load();
+      on_change_();
+    }
+    lock.lock();
+  }
+}
+
+void ViewedScene::load() {
+  RenderRequest request = request_;
+  SceneState state;
+  {
+    const std::lock_guard lock(mutex_);
+    redefined_ = false;
+    state.version = state_.version + 1;
+    state.loaded = state_.loaded;
+    request.scene.definitions.insert(request.scene.definitions.end(), values_.begin(), values_.end());
+  }
+  request.scene.on_import = [&](const std::string& path) { files_.add(path); };
+  cache_.background = nullptr;  // its file may have changed
+  cache_.messages.clear();
+  std::istringstream in;
+  std::ostringstream out, err;
+  read_into(state, request, cache_, {in, out, err});
+  state.messages = std::move(err).str();
+  if (state.good && !state.loaded->scene().background.image.file.empty()) {
+    files_.add(state.loaded->scene().background.image.file);
+  }
+  const std::lock_guard lock(mutex_);
+  state_ = std::move(state);
+}
+
+}  // namespace fathom::cli
