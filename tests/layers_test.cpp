@@ -69,6 +69,9 @@ const std::vector<std::string> kFolders = {
     "runtime/cli/picture",
     "runtime/cli/frames",
     "runtime/cli/plan",
+    "runtime/cli/report",
+    "runtime/cli/view/page",
+    "runtime/cli/view",
     "runtime/cli",
 };
 

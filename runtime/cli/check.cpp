@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/cli/check_report.h"
+#include "runtime/cli/dump/check_report.h"
 #include "runtime/cli/frames/scene_frames.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/input/text_file.h"

@@ -15,6 +15,7 @@ namespace fathom::cli {
 // Each function takes the arguments after the verb and returns an ExitCode.
 int run_render(std::span<const std::string> args, const Streams& streams);
 int run_view(std::span<const std::string> args, const Streams& streams);
+int run_report(std::span<const std::string> args, const Streams& streams);
 int run_check(std::span<const std::string> args, const Streams& streams);
 int run_dump(std::span<const std::string> args, const Streams& streams);
 int run_compile(std::span<const std::string> args, const Streams& streams);
@@ -43,6 +44,7 @@ struct Verb {
 inline constexpr std::array kVerbs = {
     Verb{"render", "scene.json -o out.png", "renders the scene to image files", run_render},
     Verb{"view", "scene.json", "shows the scene in a browser while it is written", run_view},
+    Verb{"report", "scene.json -o report.html", "writes a page about the scene, to be shared", run_report},
     Verb{"check", "scene.json", "prints errors, warnings and how exact the scene is", run_check},
     Verb{"dump", "scene.json", "prints the compiled scene", run_dump},
     Verb{"compile", "scene.json -o scene.fbc", "compiles the scene to a file", run_compile},

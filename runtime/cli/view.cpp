@@ -91,7 +91,7 @@ int run_view(std::span<const std::string> args, const Streams& streams) {
   }
   streams.err << session.state().messages;
   streams.out << *address << std::endl;
-  note(streams, "the page is at this address; Ctrl-C ends");
+  say(streams, "the page is at this address; Ctrl-C ends");
   if (!request.no_open) open_browser(*address);
   std::thread serving([&] { server.run(); });
   while (!interruption.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -1,5 +1,5 @@
 // Writes values of parameters into the text of a scene, as their defaults.
-// Tested by: tests/runtime/cli/view/keep_parameters_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <string>

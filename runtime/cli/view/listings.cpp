@@ -5,7 +5,7 @@
 #include "compiler/analysis/report.h"
 #include "compiler/pass_diff.h"
 #include "compiler/shapes/print_graph.h"
-#include "runtime/cli/check_report.h"
+#include "runtime/cli/dump/check_report.h"
 #include "runtime/cli/dump/region_listing.h"
 #include "runtime/cli/dump/trace_listing.h"
 

@@ -1,5 +1,5 @@
 // The texts about a scene that the viewer shows: those of `fathom dump` and `fathom check`.
-// Tested by: tests/runtime/cli/view/listings_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "runtime/chart/colormap.h"
 #include "runtime/denoise/denoise.h"
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_io.h"
+#include "runtime/image/image_png.h"
 
 namespace fathom::cli {
 namespace {
@@ -40,6 +42,14 @@ Bytes cost_file(const runtime::Film& film, double runtime::PixelMeans::*value) {
   return encode_image(image, runtime::ImageFormat::Png);
 }
 
+// Returns the file that `fathom render` would write.
+Bytes layer_file(const runtime::Film& film, Layer layer, const runtime::ToneMapping& tone) {
+  const runtime::DisplayImage image(layer_of(film, layer), tone);
+  const bool srgb = is_light(layer) || layer == Layer::Albedo;
+  return runtime::encode_png(image.width(), image.height(), 8, srgb,
+                             [&](int y, std::span<std::uint8_t> row) { image.row(y, row); });
+}
+
 }  // namespace
 
 Bytes mask_file(const std::vector<bool>& pixels, int width, int height) {
@@ -58,9 +68,9 @@ Bytes PictureFiles::encode(const std::shared_ptr<const Picture>& picture, std::s
   const runtime::ToneMapping tone{std::clamp(film.exposure + exposure, -100.0, 100.0), film.tone};
   const bool is_wanted = denoise == Denoise::On || (denoise == Denoise::Auto && picture->samples < kFewSamples);
   if (*found == Layer::Beauty && is_wanted && picture->samples >= 2) {
-    return encode_image(layer_image(*denoised(picture), *found, tone), runtime::ImageFormat::Png);
+    return layer_file(*denoised(picture), *found, tone);
   }
-  return encode_image(layer_image(picture->film, *found, tone), runtime::ImageFormat::Png);
+  return layer_file(picture->film, *found, tone);
 }
 
 std::shared_ptr<const runtime::Film> PictureFiles::denoised(const std::shared_ptr<const Picture>& picture) {

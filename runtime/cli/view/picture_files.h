@@ -1,5 +1,5 @@
 // Layers of the viewer's picture as PNG files.
-// Tested by: tests/runtime/cli/view/true_picture_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <cstdint>

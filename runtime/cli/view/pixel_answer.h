@@ -1,5 +1,5 @@
 // What the viewer tells about a pixel: the object that its ray meets, the way there, and how the hit is known.
-// Tested by: tests/runtime/cli/view/pixel_answer_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

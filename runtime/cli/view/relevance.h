@@ -1,6 +1,6 @@
 // The pixels in which an instruction matters: those whose value at the hit depends on it, because no choice of the
 // program (min, max and their smooth variants) leaves its operand out there.
-// Tested by: tests/runtime/cli/view/relevance_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <cstdint>

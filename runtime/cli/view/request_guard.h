@@ -3,7 +3,7 @@
 // The server listens on the loopback interface only, where any program of the machine and any page in its browser can
 // reach it. The path therefore begins with a secret token, `Host` must be the server's (DNS rebinding: Jackson et
 // al., "Protecting Browsers from DNS Rebinding Attacks", 2007), and `Origin` and `Sec-Fetch-Site` must not name
-// another site. Tested by: tests/runtime/cli/view/request_guard_test.cpp
+// another site. Tested by: tests/runtime/cli/view/cli_view_attacks_test.cpp
 #pragma once
 
 #include <optional>

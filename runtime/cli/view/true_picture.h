@@ -2,7 +2,7 @@
 // samples, and from the beginning whenever the scene or the camera changes.
 //
 // With all samples it has the bits of `fathom render --uniform` of the same size and camera.
-// Tested by: tests/runtime/cli/view/true_picture_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <atomic>

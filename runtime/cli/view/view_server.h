@@ -1,5 +1,5 @@
 // The viewer's server: answers the requests of its own page over HTTP, on the loopback interface only.
-// Tested by: tests/runtime/cli/view/view_server_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_attacks_test.cpp
 #pragma once
 
 #include <memory>

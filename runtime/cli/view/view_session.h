@@ -1,5 +1,5 @@
 // What the viewer answers, without HTTP: the scene, its true picture, and the answers about both.
-// Tested by: tests/runtime/cli/view/view_session_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <condition_variable>

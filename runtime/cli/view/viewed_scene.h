@@ -1,5 +1,5 @@
 // The scene that the viewer shows: read and compiled again whenever its file or the values of its parameters change.
-// Tested by: tests/runtime/cli/view/viewed_scene_test.cpp
+// Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 
 #include <condition_variable>

@@ -1,4 +1,4 @@
-#include "runtime/cli/check_report.h"
+#include "runtime/cli/dump/check_report.h"
 
 #include <fmt/format.h>
 
