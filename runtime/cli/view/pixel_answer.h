@@ -1,4 +1,4 @@
-// What the viewer tells about a pixel: the object that its ray meets, the way there, and how the hit is known.
+// The answer about a pixel of the viewer: the object that its ray meets, the way there, and how the hit is known.
 // Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 

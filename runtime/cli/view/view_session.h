@@ -1,4 +1,4 @@
-// What the viewer answers, without HTTP: the scene, its true picture, and the answers about both.
+// The viewer without HTTP: the scene, its true picture, and the answers about both.
 // Tested by: tests/runtime/cli/view/cli_view_test.cpp
 #pragma once
 

@@ -41,7 +41,7 @@ class ViewedScene {
   ViewedScene& operator=(const ViewedScene&) = delete;
 
   SceneState state() const;
-  // Replaces the values of the scene's parameters. Those of the command line stay where `values` has none.
+  // Replaces the values of the scene's parameters. The command line's values stay where `values` has none.
   void define(compiler::Definitions values);
 
  private:
@@ -51,7 +51,7 @@ class ViewedScene {
   const RenderRequest request_;
   const std::function<void()> on_change_;
   runtime::FileWatch files_;  // of the thread that loads
-  RenderCache cache_;         // likewise
+  RenderCache cache_;         // of the thread that loads
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   SceneState state_;
