@@ -1,4 +1,5 @@
-// The texts of runtime/live/live.js, live.frag and live.css, which the build puts into the program.
+// The texts of the scripts live_*.js together, of live.frag and of live.css in runtime/live/, which the build puts
+// into the program.
 #pragma once
 
 #include <string_view>

@@ -34,14 +34,29 @@ constexpr std::string_view kPage = R"(<!doctype html>
 <style>
 {style}</style>
 <header><h1>{title}</h1><span id="status" role="status"></span></header>
-<canvas id="view" aria-label="{title}"></canvas>
+<canvas id="view" tabindex="0" aria-label="{title}"></canvas>
+<form id="controls" autocomplete="off"><label>show <select id="overlay"></select></label>
+<output id="overlay-key" for="overlay"></output>
+<label>slice across <select id="slice-axis"><option value="-1">nothing</option><option value="0">x</option>
+<option value="1">y</option><option value="2">z</option></select></label>
+<label>at <input type="range" id="slice-at"> <output id="slice-place" for="slice-at"></output></label></form>
 <footer><span>drag: orbit</span><span><kbd>Shift</kbd> drag: pan</span><span>wheel: zoom</span>
+<span>double click: look at a point</span>
 <span><kbd>W</kbd> <kbd>A</kbd> <kbd>S</kbd> <kbd>D</kbd> <kbd>Q</kbd> <kbd>E</kbd>: walk</span>
 <span><kbd>Home</kbd>: the scene's camera</span><span><kbd>C</kbd>: copy the camera</span></footer>
 <script type="application/json" id="scene">{scene}</script>
 <script>
-{script}</script>
+{script}{start}</script>
 </html>
+)";
+
+// Follows the script of the live view, which other pages use, too.
+constexpr std::string_view kStart = R"(
+const byId = id => document.getElementById(id);
+const view = new LiveView(byId("view"), text => { byId("status").textContent = text; });
+connectOverlay(view, byId("overlay"), byId("overlay-key"));
+connectSlice(view, {axis: byId("slice-axis"), at: byId("slice-at"), place: byId("slice-place")});
+view.setScene(JSON.parse(byId("scene").textContent));
 )";
 
 }  // namespace
@@ -49,7 +64,7 @@ constexpr std::string_view kPage = R"(<!doctype html>
 std::string live_page(const compiler::CompiledScene& scene) {
   return fmt::format(fmt::runtime(kPage), fmt::arg("title", escape_markup(scene.source.name())),
                      fmt::arg("style", kLiveStyle), fmt::arg("scene", as_element(live_scene(scene))),
-                     fmt::arg("script", kLiveScript));
+                     fmt::arg("script", kLiveScript), fmt::arg("start", kStart));
 }
 
 }  // namespace fathom::runtime

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -12,8 +15,10 @@
 
 #include "compiler/emit/emit.h"
 #include "compiler/scene/framing.h"
+#include "runtime/light/environment_file.h"
 #include "runtime/light/sky.h"
 #include "runtime/live/live_files.h"
+#include "runtime/live/live_surfaces.h"
 #include "runtime/sampling/camera.h"
 
 namespace fathom::runtime {
@@ -32,6 +37,13 @@ constexpr double kGuessedStep = 0.3;
 // the camera's target.
 constexpr std::size_t kMaxLights = 8;
 constexpr double kFar = 100;
+constexpr double kSunRadius = 0.00465;  // of the sun's disc, at unit distance
+// Stands for an infinite side of a box.
+constexpr double kEndless = 1e20;
+// Share by which the slice goes beyond the scene on each side.
+constexpr double kMargin = 0.1;
+// Max size of a background's file that is read for its mean colours.
+constexpr std::uintmax_t kMaxBackground = 32 << 20;  // bytes
 
 json list(dvec3 v) { return {v.x, v.y, v.z}; }
 
@@ -53,20 +65,19 @@ json camera_of(const CompiledScene& scene, const compiler::Camera& camera) {
           {"orthographic", camera.projection == compiler::Camera::Projection::Orthographic}};
 }
 
-json surface_of(const CompiledScene& scene, const compiler::Surface& surface) {
+// `point`: the surface's material, without textures.
+json surface_of(const CompiledScene& scene, const compiler::Surface& surface, const MaterialPoint& point) {
   const Material& material = scene.materials[surface.material];
   const bool mirror = material.type == Material::Type::Specular;
   const bool glossy = mirror || material.type == Material::Type::Transparent;
   const bool plain = material.type == Material::Type::Diffuse || material.type == Material::Type::Emissive;
-  const dvec3 glow = compiler::emits(material) ? material.emission * material.emission_luminance : dvec3(0);
+  const dvec3 glow = compiler::emits(material) ? dvec3(point.emitted_radiance()) : dvec3(0);
+  const bool clear = material.type == Material::Type::Principled;
+  const float through = clear ? point.transmission : 0;
   return {{"name", surface.name},
-          {"color", list(material.base_weight * material.color)},
-          {"roughness", glossy  ? 0.05
-                        : plain ? 1
-                                : material.roughness},
-          {"metalness", mirror            ? 1
-                        : plain || glossy ? 0
-                                          : material.metalness},
+          {"color", list(glm::mix(point.base_color, point.transmission_color, through))},
+          {"roughness", glossy ? 0.05 : plain ? 1 : point.roughness},
+          {"metalness", mirror ? 1 : plain || glossy ? 0 : point.metalness},
           {"emission", list(glow)}};
 }
 
@@ -100,6 +111,7 @@ double radius_of(const AreaLight& light) {
   return radius;
 }
 
+// `radius`: of the body, or of a directional light's disc at unit distance.
 json light_of(dvec3 at, bool place, dvec3 power, double radius = 0) {
   return {{"at", {at.x, at.y, at.z, place ? 1 : 0}}, {"power", list(power)}, {"radius", radius}};
 }
@@ -108,12 +120,12 @@ std::vector<json> lights_of(const CompiledScene& scene) {
   std::vector<json> lights;
   for (const compiler::Light& light : scene.lights) {
     const bool directional = light.type == compiler::Light::Type::Directional;
-    lights.push_back(
-        light_of(directional ? -light.direction : light.position + scene.origin, !directional, light.intensity));
+    lights.push_back(light_of(directional ? -light.direction : light.position + scene.origin, !directional,
+                              light.intensity, directional ? std::tan(glm::radians(light.angle)) : 0));
   }
   const compiler::Background::Sky& sky = scene.background.sky;
   if (scene.background.type == compiler::Background::Type::Sky && sky.sun_disc) {
-    lights.push_back(light_of(sky.sun, false, dvec3(Sky(sky).sun_irradiance())));
+    lights.push_back(light_of(sky.sun, false, dvec3(Sky(sky).sun_irradiance()), kSunRadius));
   }
   for (const AreaLight& light : scene.area_lights) {
     const Material& material = scene.materials[light.material];
@@ -124,22 +136,88 @@ std::vector<json> lights_of(const CompiledScene& scene) {
   return lights;
 }
 
-// Returns the background straight down and straight up. A picture counts as an even grey.
+// Returns the gradient whose lower and upper halves have the means of a background image's. Grey if the image is too
+// large to be read each time that the scene changes.
+std::pair<dvec3, dvec3> means_of(const compiler::Background::Image& background) {
+  const std::pair<dvec3, dvec3> grey = {dvec3(0.5), dvec3(0.5)};
+  std::error_code error;
+  if (!(std::filesystem::file_size(background.file, error) <= kMaxBackground)) return grey;
+  const auto read = read_environment(background.file);
+  const auto* image = std::get_if<EnvironmentImage>(&read);
+  if (image == nullptr) return grey;
+  dvec3 sums[2] = {dvec3(0), dvec3(0)};
+  double weights[2] = {0, 0};
+  for (int y = 0; y < image->height; ++y) {
+    const std::size_t half = 2 * y < image->height ? 1 : 0;
+    // Rows near the poles show less of the sphere.
+    const double weight = std::sin(std::numbers::pi * (y + 0.5) / image->height);
+    for (int x = 0; x < image->width; ++x) {
+      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x);
+      sums[half] += weight * dvec3(image->pixels[at]);
+      weights[half] += weight;
+    }
+  }
+  const auto mean = [&](int half) { return background.strength * sums[half] / std::max(weights[half], 1e-9); };
+  // The means of a gradient's halves are half as far apart as its ends.
+  const dvec3 down = mean(0), up = mean(1), more = (up - down) / 2.0;
+  return {glm::max(down - more, 0.0), glm::max(up + more, 0.0)};
+}
+
+// Returns the background straight down and straight up.
 std::pair<dvec3, dvec3> background_of(const compiler::Background& background) {
   if (background.type == compiler::Background::Type::Gradient) return {background.bottom, background.top};
-  if (background.type == compiler::Background::Type::Image) return {dvec3(0.5), dvec3(0.5)};
+  if (background.type == compiler::Background::Type::Image) return means_of(background.image);
   const Sky sky(background.sky);
   return {dvec3(sky.radiance({0, -1, 0})), dvec3(sky.radiance({0, 1, 0}))};
 }
 
-std::string shader_of(const CompiledScene& scene, std::size_t lights) {
+// Returns the box that a slice shows: the bounded parts of the scene along an axis without end, or what the camera
+// looks at if there are none.
+compiler::Box slice_box(const CompiledScene& scene, const compiler::Camera& camera) {
+  compiler::Box box = scene.bound;
+  const dvec3 reach(glm::length(camera.target - camera.position));
+  const bool has_parts = !scene.contents.empty() && scene.contents.finite();
+  const compiler::Box instead =
+      has_parts ? scene.contents : compiler::Box{camera.target - reach, camera.target + reach};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.lo[axis] < box.hi[axis] && std::isfinite(box.hi[axis] - box.lo[axis])) continue;
+    box.lo[axis] = instead.lo[axis], box.hi[axis] = instead.hi[axis];
+  }
+  return {box.lo + scene.origin, box.hi + scene.origin};
+}
+
+std::string vector_text(dvec3 v) {
+  v = glm::clamp(v, -kEndless, kEndless);
+  return fmt::format("vec3({:.9e}, {:.9e}, {:.9e})", v.x, v.y, v.z);
+}
+
+// Returns the exactness of all surfaces, 2 bits each, 16 in a number.
+std::string exactness_text(const CompiledScene& scene) {
+  const std::vector<compiler::Exactness> all = exactness_of_surfaces(scene);
+  std::string numbers;
+  for (std::size_t first = 0; first < std::max<std::size_t>(1, all.size()); first += 16) {
+    std::uint32_t packed = 0;
+    for (std::size_t i = first; i < std::min(first + 16, all.size()); ++i) {
+      packed |= static_cast<std::uint32_t>(all[i]) << (2 * (i - first));
+    }
+    numbers += fmt::format("{}{}u", first == 0 ? "" : ", ", packed);
+  }
+  return fmt::format("const uint kExactness[{}] = uint[]({});\n", (std::max<std::size_t>(1, all.size()) + 15) / 16,
+                     numbers);
+}
+
+std::string shader_of(const CompiledScene& scene, const compiler::Box& slice, std::size_t lights) {
   const double step = std::isfinite(scene.lipschitz) ? 1 / std::max(scene.lipschitz, 1e-6) : kGuessedStep;
+  const dvec3 margin = kMargin * (slice.hi - slice.lo);
   return compiler::emit_glsl(scene, "scene", true) +
          fmt::format(
              "\nconst int kSteps = {};\nconst int kSurfaces = {};\nconst int kLights = {};\n"
-             "const float kInverseLipschitz = {:e};\n",
-             kSteps, std::max<std::size_t>(1, scene.surfaces.size()), std::max<std::size_t>(1, lights), step) +
-         std::string(kLiveShader);
+             "const float kInverseLipschitz = {:e};\nconst vec3 kLo = {}, kHi = {};\n"
+             "const vec3 kSliceLo = {}, kSliceHi = {};\n",
+             kSteps, std::max<std::size_t>(1, scene.surfaces.size()), std::max<std::size_t>(1, lights), step,
+             vector_text(scene.bound.lo + scene.origin), vector_text(scene.bound.hi + scene.origin),
+             vector_text(slice.lo - margin), vector_text(slice.hi + margin)) +
+         exactness_text(scene) + std::string(kLiveShader);
 }
 
 }  // namespace
@@ -149,7 +227,11 @@ json live_scene(const CompiledScene& scene) {
   const auto [bottom, top] = background_of(scene.background);
   const compiler::Camera camera = placed_camera(scene);
   json surfaces = json::array();
-  for (const compiler::Surface& surface : scene.surfaces) surfaces.push_back(surface_of(scene, surface));
+  const std::vector<MaterialPoint> materials = mean_materials(scene, camera);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    surfaces.push_back(surface_of(scene, scene.surfaces[i], materials[i]));
+  }
+  const compiler::Box slice = slice_box(scene, camera);
   json bound;
   if (scene.bound.finite() && !scene.bound.empty()) {
     bound = {list(scene.bound.lo + scene.origin), list(scene.bound.hi + scene.origin)};
@@ -160,10 +242,11 @@ json live_scene(const CompiledScene& scene) {
           {"top", list(top)},
           {"lights", lights},
           {"bound", bound},
+          {"slice", {list(slice.lo), list(slice.hi)}},
           {"surfaces", surfaces},
-          {"far", kFar * glm::length(camera.target - camera.position)},
+          {"far", scene.settings.far.value_or(kFar * glm::length(camera.target - camera.position))},
           {"exposure", std::exp2(scene.film.exposure)},
-          {"shader", shader_of(scene, lights.size())}};
+          {"shader", shader_of(scene, slice, lights.size())}};
 }
 
 }  // namespace fathom::runtime

@@ -10,7 +10,7 @@ struct PageFile {
   std::string_view name, text;
 };
 
-// The files of runtime/cli/view/page, and live.js.
+// The files of runtime/cli/view/page, and the scripts of runtime/live.
 std::span<const PageFile> page_files();
 
 }  // namespace fathom::cli

@@ -66,17 +66,19 @@ std::string certificate(const compiler::CompiledScene& scene, const RayHit& hit)
                                  : "; the field's slope is an estimate, so that a surface before it may be missed");
 }
 
-// Returns the source position of the instruction that carries a surface, if there is one.
+// Returns the source position of a surface: of its `tag`, or of the last instruction of a program without tags.
 const vm::DebugEntry* find_surface(const vm::VerifiedProgram& program, std::uint32_t surface) {
   const vm::Program& code = program.program();
-  for (std::size_t at = 0; at < code.words.size(); at += vm::instruction_length(code.words[at])) {
-    const vm::OpcodeInfo& row = *vm::find_opcode(code.words[at] & 0xff);
-    if (row.mnemonic != "tag" || vm::operand_of(code.words[at]) != surface) continue;
-    for (const vm::DebugEntry& entry : code.debug) {
-      if (entry.offset == at && entry.line > 0) return &entry;
-    }
+  const vm::DebugEntry* found = nullptr;
+  bool has_tags = false;
+  for (const vm::DebugEntry& entry : code.debug) {
+    const std::uint32_t word = code.words[entry.offset];
+    const bool is_tag = vm::find_opcode(word & 0xff)->mnemonic == "tag";
+    if (is_tag && vm::operand_of(word) == surface) return &entry;
+    has_tags |= is_tag;
+    if (entry.line > 0) found = &entry;
   }
-  return nullptr;
+  return has_tags ? nullptr : found;
 }
 
 void add_surface(json& answer, const compiler::CompiledScene& scene, glm::dvec3 point, int side) {

@@ -103,10 +103,12 @@ std::variant<compiler::Definitions, std::string> read_values(const std::string& 
   return definitions;
 }
 
-json parameters_json(const compiler::CompiledScene& scene) {
+json parameters_json(const LoadedScene& loaded) {
   json list = json::array();
-  for (const compiler::Parameter& each : scene.parameters) {
+  for (const compiler::Parameter& each : loaded.scene().parameters) {
+    const auto own = std::ranges::find(loaded.defaults, each.name, &compiler::Parameter::name);
     list.push_back({{"name", each.name},
+                    {"default", own == loaded.defaults.end() ? each.value : own->value},
                     {"value", each.value},
                     {"min", limit(each.min)},
                     {"max", limit(each.max)},
@@ -230,7 +232,7 @@ Answer ViewSession::scene_answer() const {
   const compiler::CompiledScene& scene = state.loaded->scene();
   answer["name"] = scene.source.name();
   answer["live"] = runtime::live_scene(scene);
-  answer["parameters"] = parameters_json(scene);
+  answer["parameters"] = parameters_json(*state.loaded);
   answer["exposure"] = scene.film.exposure;
   answer["spp"] = scene.settings.spp;
   answer["width"] = scene.film.width, answer["height"] = scene.film.height;

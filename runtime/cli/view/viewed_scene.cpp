@@ -9,19 +9,6 @@ namespace {
 // Time between polls: a change counts after two, so that it shows within a tenth of a second.
 constexpr std::chrono::milliseconds kPoll{15};
 
-// Reads and compiles the scene. `state` receives its text, and the scene if there is no error.
-void read_into(SceneState& state, const RenderRequest& request, RenderCache& cache, const Streams& streams) {
-  auto read = read_scene(request.scene, streams);
-  if (std::holds_alternative<ExitCode>(read)) return;
-  auto& input = std::get<SceneInput>(read);
-  state.text = input.source.text();
-  auto picture = prepare_render(request, input, cache, streams);
-  if (std::holds_alternative<ExitCode>(picture)) return;
-  state.good = true;
-  state.loaded = std::make_shared<const LoadedScene>(LoadedScene{
-      state.version, std::move(input), request.scene, std::get<std::unique_ptr<PreparedRender>>(std::move(picture))});
-}
-
 }  // namespace
 
 ViewedScene::ViewedScene(const RenderRequest& request, std::function<void()> on_change)
@@ -82,13 +69,41 @@ void ViewedScene::load() {
   cache_.messages.clear();
   std::istringstream in;
   std::ostringstream out, err;
-  read_into(state, request, cache_, {in, out, err});
+  read_into(state, request, {in, out, err});
   state.messages = std::move(err).str();
   if (state.good && !state.loaded->scene().background.image.file.empty()) {
     files_.add(state.loaded->scene().background.image.file);
   }
   const std::lock_guard lock(mutex_);
   state_ = std::move(state);
+}
+
+// Reads and compiles the scene. `state` receives its text, and the scene if there is no error.
+void ViewedScene::read_into(SceneState& state, const RenderRequest& request, const Streams& streams) {
+  auto read = read_scene(request.scene, streams);
+  if (std::holds_alternative<ExitCode>(read)) return;
+  auto& input = std::get<SceneInput>(read);
+  state.text = input.source.text();
+  auto prepared = prepare_render(request, input, cache_, streams);
+  if (std::holds_alternative<ExitCode>(prepared)) return;
+  auto& picture = std::get<std::unique_ptr<PreparedRender>>(prepared);
+  auto defaults = defaults_of(input, *picture, state.loaded.get());
+  state.good = true;
+  state.loaded = std::make_shared<const LoadedScene>(
+      LoadedScene{state.version, std::move(input), request.scene, std::move(picture), std::move(defaults)});
+}
+
+// Returns the parameters with the file's values. A scene whose values were replaced is compiled once more without
+// them, unless its text is that of the version before.
+std::vector<compiler::Parameter> ViewedScene::defaults_of(const SceneInput& input, const PreparedRender& picture,
+                                                          const LoadedScene* before) const {
+  if (picture.request.scene.definitions.size() == request_.scene.definitions.size()) return picture.scene.parameters;
+  if (before && before->input.source.text() == input.source.text()) return before->defaults;
+  std::istringstream in;
+  std::ostringstream out, err;
+  const auto compiled = compile_scene(input, request_.scene, {in, out, err});
+  const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
+  return scene ? scene->parameters : picture.scene.parameters;
 }
 
 }  // namespace fathom::cli

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "runtime/base/file_watch.h"
 #include "runtime/cli/picture/prepared_render.h"
@@ -20,6 +21,7 @@ struct LoadedScene {
   SceneInput input;
   SceneArguments arguments;  // with the parameters' values
   std::unique_ptr<PreparedRender> picture;
+  std::vector<compiler::Parameter> defaults;  // the parameters with the values that the file gives them
 
   const compiler::CompiledScene& scene() const { return picture->scene; }
 };
@@ -47,6 +49,9 @@ class ViewedScene {
  private:
   void run();
   void load();
+  void read_into(SceneState& state, const RenderRequest& request, const Streams& streams);
+  std::vector<compiler::Parameter> defaults_of(const SceneInput& input, const PreparedRender& picture,
+                                               const LoadedScene* before) const;
 
   const RenderRequest request_;
   const std::function<void()> on_change_;

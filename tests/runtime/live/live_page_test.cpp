@@ -56,7 +56,7 @@ TEST_CASE("a live page has the scene's functions, camera, materials and lights",
   CHECK(scene["camera"]["half"][1].get<double>() == Approx(0.5));
   REQUIRE(scene["surfaces"].size() == 2);
   CHECK(scene["surfaces"][0]["name"] == "ball");
-  CHECK(scene["surfaces"][0]["color"] == json({0.1, 0.2, 0.3}));
+  CHECK(scene["surfaces"][0]["color"][2].get<double>() == Approx(0.3));
   CHECK(scene["surfaces"][0]["metalness"] == 1);
   CHECK(scene["surfaces"][1]["emission"] == json({4, 4, 4}));
   REQUIRE(scene["lights"].size() == 2);
@@ -67,9 +67,45 @@ TEST_CASE("a live page has the scene's functions, camera, materials and lights",
   CHECK(scene["bound"][1][0].get<double>() >= 1.5);
 }
 
-TEST_CASE("a live page of an unbounded scene has no box", "[live]") {
-  const std::string page = runtime::live_page(compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]})"));
-  CHECK(scene_of(page)["bound"].is_null());
+TEST_CASE("a live page of an unbounded scene has no box, but a slice of its bounded parts", "[live]") {
+  const json scene = scene_of(runtime::live_page(
+      compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 2})")));
+  CHECK(scene["bound"].is_null());
+  REQUIRE(scene["slice"].is_array());
+  CHECK(scene["slice"][0][0].get<double>() == Approx(-2).margin(0.1));
+  CHECK(scene["slice"][1][2].get<double>() == Approx(2).margin(0.1));
+  const std::string shader = scene["shader"];
+  CHECK(count(shader, "const vec3 kLo = vec3(-1.000000000e+20, -1.000000000e+20,") == 1);
+}
+
+// Sides of a live page's box without end, and of an empty scene, would be no numbers in GLSL.
+TEST_CASE("the shader of a live page has finite numbers only", "[live]") {
+  const std::string shader =
+      scene_of(runtime::live_page(compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]})")))["shader"];
+  CHECK(count(shader, "inf") == 0);
+  CHECK(count(shader, "nan") == 0);
+}
+
+TEST_CASE("a live page knows how far the distance to each surface can be trusted", "[live]") {
+  const json scene = scene_of(runtime::live_page(compiled_objects(
+      R"({"name": "a", "type": "sphere", "radius": 1, "translate": [9, 0, 0]},
+         {"name": "b", "type": "mandelbulb"},
+         {"name": "c", "type": "intersection", "translate": [-9, 0, 0],
+          "of": [{"type": "sphere", "radius": 1}, {"type": "box", "half_size": [0.8, 0.8, 0.8]}]})")));
+  const std::string shader = scene["shader"];
+  CHECK(scene["surfaces"].size() == 3);
+  // 2 bits each: exact 0, an estimate 2, a bound 1.
+  CHECK(count(shader, "const uint kExactness[1] = uint[](24u);") == 1);
+}
+
+TEST_CASE("a textured surface of a live page has the mean colour that the camera sees", "[live]") {
+  const json scene = scene_of(runtime::live_page(test::compiled(R"({"version": 1,
+    "materials": {"ramp": {"type": "diffuse", "color": {"type": "gradient", "from": [0, -1, 0], "to": [0, 1, 0],
+                                                        "a": [0, 0, 0], "b": [0.8, 0.4, 0]}}},
+    "objects": [{"name": "wall", "type": "box", "half_size": [1, 1, 0.1], "material": "ramp"}],
+    "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 40}, "film": {"width": 100, "height": 100}})")));
+  CHECK(scene["surfaces"][0]["color"][0].get<double>() == Approx(0.4).margin(0.02));
+  CHECK(scene["surfaces"][0]["color"][1].get<double>() == Approx(0.2).margin(0.01));
 }
 
 // Rays ended before a large scene: a hundred times the distance of a camera that had not been placed yet.

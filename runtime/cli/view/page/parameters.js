@@ -97,6 +97,11 @@ export function showParameters(parameters) {
   showChanged();
 }
 
+// Tells a server that may have been started anew what the user has changed.
+export function sendAgain() {
+  if (Object.keys(changed).length > 0) send();
+}
+
 async function keep() {
   try {
     const {written} = await (await post("keep", {values: changed})).json();
@@ -109,7 +114,7 @@ async function keep() {
   }
 }
 
-async function reset() {
+function reset() {
   changed = {};
   document.activeElement?.blur();
   showChanged();

@@ -20,7 +20,7 @@ const stage = byId("stage"), image = byId("true"), mark = byId("mark");
 
 export const view = new LiveView(byId("live"), text => { byId("status").textContent = text; });
 
-let mode = "both", layer = "color";
+let mode = view.isAble ? "both" : "true", layer = "color";
 let cameraId = Math.floor(Math.random() * 9e8);  // pages that are open at the same time differ
 let asked = "";       // the last view that the server was asked for
 let event = null;     // the newest picture's facts
@@ -132,6 +132,7 @@ function connectBar() {
     byId("side-live").textContent = kOverlays[view.overlay][1] ? `live – ${kOverlays[view.overlay][1]}` : "live";
     fetchPicture();
   });
+  document.querySelector(`input[name="mode"][value="${mode}"]`).checked = true;
   byId("mode").addEventListener("change", change => {
     mode = change.target.value;
     showPictures();

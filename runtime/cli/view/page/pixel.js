@@ -22,7 +22,7 @@ function lineLink({line, column}) {
 
 function facts(answer) {
   const rows = [
-    ["object", answer.object], ["shape", answer.type], ["material", answer.material],
+    ["object", answer.object], ["material", answer.material],
     ["source", answer.line ? lineLink(answer) : undefined],
     ["position", answer.position && point(answer.position)], ["normal", answer.normal && point(answer.normal)],
     ["distance", answer.distance], ["slope there", answer.slope], ["known by", answer.certificate],

@@ -6,7 +6,7 @@ import {askForView, onPixel, onView, pictureNumber, setSceneVersion, tellPicture
 import {redrawMask} from "./mask.js";
 import {askPixel, onAnswer, onPixelLine, outdatePixel} from "./pixel.js";
 import {chooseLine, onProgramLine, setVersion, showProgram} from "./program.js";
-import {showParameters} from "./parameters.js";
+import {sendAgain, showParameters} from "./parameters.js";
 import {markLine, onLine, showSource} from "./source.js";
 import {showTab} from "./tabs.js";
 
@@ -52,6 +52,7 @@ function follow() {
     lost = 0;
     connection("connected", "connected");
     loadScene();
+    sendAgain();
     askForView(true);
   });
   events.addEventListener("scene", event => {

@@ -92,7 +92,7 @@ TEST_CASE("view: without the token there is nothing, and no file but the page's"
   server.refused(server.path(root + "%2e%2e%2f%2e%2e%2f%2e%2e%2fetc/passwd"), {404});
   server.refused(server.path(root + "..\\..\\etc\\passwd"), {404});
   server.refused(server.path(root + "scene.fathom"), {404});
-  server.refused(server.path(root + "live_js"), {404});  // the dot of live.js is a dot
+  server.refused(server.path(root + "live_view_js"), {404});  // the dot of live_view.js is a dot
   server.refused(server.path("file:///etc/passwd"), {400, 404});
   server.refused(server.path("http://attacker.example/" + root), {400, 404});
   server.refused(server.path(root + std::string("scene\0.js", 9)), {400, 404});

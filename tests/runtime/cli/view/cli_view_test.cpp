@@ -155,11 +155,12 @@ TEST_CASE("view: parameters can be set, and written to the file", "[cli][view]")
   ViewClient client(folder, "scene.fathom");
   const json first = client.json("scene");
   REQUIRE(first["parameters"].size() == 2);
-  CHECK(first["parameters"][0] == json::parse(R"({"name": "r", "value": 0.5, "min": 0.1, "max": 2.0,
+  CHECK(first["parameters"][0] == json::parse(R"({"name": "r", "default": 0.5, "value": 0.5, "min": 0.1, "max": 2.0,
                                                   "doc": "of the ball"})"));
   CHECK(client.post("parameters", R"({"values": {"r": 0.75}})").status == 204);
   const json set = client.wait_for("scene", [](const json& s) { return s["parameters"][0]["value"] == 0.75; });
   CHECK(set["parameters"][1]["value"] == 1.5);
+  CHECK(set["parameters"][0]["default"] == 0.5);
   CHECK(set["text"] == kText);
   CHECK(client.post("parameters", R"({"values": {"r": 3}})").status == 400);
   CHECK(client.post("parameters", R"({"values": {"q": 3}})").status == 400);
