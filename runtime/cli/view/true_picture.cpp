@@ -38,8 +38,7 @@ class ViewRender {
     options_.threads = threads;
     options_.uniform = true;
     options_.cancel = &cancel;
-    options_.layers = runtime::kAllLayers;
-    options_.layers.halves = true;
+    options_.layers = {.first_hit = true, .cost = true, .variance = true, .halves = true};
   }
 
   const compiler::CompiledScene& scene() const { return scene_; }

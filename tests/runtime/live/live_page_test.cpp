@@ -82,8 +82,7 @@ TEST_CASE("a live page of an unbounded scene has no box, but a slice of its boun
 TEST_CASE("the shader of a live page has finite numbers only", "[live]") {
   const std::string shader =
       scene_of(runtime::live_page(compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]})")))["shader"];
-  CHECK(count(shader, "inf") == 0);
-  CHECK(count(shader, "nan") == 0);
+  for (const char* number : {"(inf", "(-inf", " inf,", " -inf,", "nan"}) CHECK(count(shader, number) == 0);
 }
 
 TEST_CASE("a live page knows how far the distance to each surface can be trusted", "[live]") {
@@ -100,7 +99,7 @@ TEST_CASE("a live page knows how far the distance to each surface can be trusted
 
 TEST_CASE("a textured surface of a live page has the mean colour that the camera sees", "[live]") {
   const json scene = scene_of(runtime::live_page(test::compiled(R"({"version": 1,
-    "materials": {"ramp": {"type": "diffuse", "color": {"type": "gradient", "from": [0, -1, 0], "to": [0, 1, 0],
+    "materials": {"ramp": {"type": "diffuse", "color": {"pattern": "gradient", "from": [0, -1, 0], "to": [0, 1, 0],
                                                         "a": [0, 0, 0], "b": [0.8, 0.4, 0]}}},
     "objects": [{"name": "wall", "type": "box", "half_size": [1, 1, 0.1], "material": "ramp"}],
     "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 40}, "film": {"width": 100, "height": 100}})")));
@@ -117,8 +116,8 @@ TEST_CASE("rays of a live page reach the scene that its camera frames", "[live]"
 
 TEST_CASE("no name of a scene ends its element in a live page", "[live]") {
   const std::string hostile = "</script><script>alert(1)</script><!--*/ \\\" '";
-  const std::string page = runtime::live_page(
-      compiled_objects("{\"name\": \"" + hostile + "\", \"type\": \"sphere\", \"radius\": 1}"));
+  const std::string page =
+      runtime::live_page(compiled_objects("{\"name\": \"" + hostile + "\", \"type\": \"sphere\", \"radius\": 1}"));
   CHECK(count(page, "<script") == 2);
   CHECK(count(page, "</script") == 2);
   CHECK(count(page, "<!--") == 0);
