@@ -22,10 +22,11 @@ std::string comment_text(std::string_view text) {
   return result;
 }
 
-// The texts of a value and of the number of the surface to which it belongs.
+// The texts of a value and of the number of the surface to which it belongs, -1 if no tag has been met.
 struct Value {
   Expression number;
-  std::string surface = "0";
+  std::string surface = "-1";
+  bool tagged = false;  // true if the surface is surely not -1
 };
 
 // Returns the text of a choice between surfaces: a if `x < y`, b if `y < x`, otherwise the lesser number, as in
@@ -51,6 +52,7 @@ class ProgramPrinter {
       comment_ = known && program_.debug[i].symbol.ends_with('"') ? program_.debug[i].symbol : "";
       instruction();
     }
+    if (result_ == Result::Surface) tag(values_.back(), "0");
     out_ += fmt::format("  return {};\n",
                         result_ == Result::Surface ? values_.back().surface : values_.back().number.text);
     return std::move(out_);
@@ -100,7 +102,7 @@ class ProgramPrinter {
       const Value below = pop();
       if (result_ == Result::Surface && below.surface != value.surface) value = named(value);
       value = {functions_.apply(Opcode::Min, {below.number, value.number}, {}),
-               surface_of(vm::info(Opcode::Min), below, value)};
+               surface_of(vm::info(Opcode::Min), below, value), below.tagged && value.tagged};
     }
     push(std::move(value));
   }
@@ -111,14 +113,16 @@ class ProgramPrinter {
     const bool stack = row.form == Form::Binary && sources.b == vm::Source::Stack;
     const Value top = stack ? pop() : Value{};
     const Value a = operand(sources.a, sources.local);
-    if (row.form == Form::Unary) return push({functions_.apply(row.opcode, {a.number}, immediates), a.surface});
+    if (row.form == Form::Unary)
+      return push({functions_.apply(row.opcode, {a.number}, immediates), a.surface, a.tagged});
     const Value b = stack ? top : operand(sources.b, sources.local);
-    push({functions_.apply(row.opcode, {a.number, b.number}, immediates), surface_of(row, a, b)});
+    const bool tagged = a.tagged && (b.tagged || row.choice == vm::Choice::None);
+    push({functions_.apply(row.opcode, {a.number, b.number}, immediates), surface_of(row, a, b), tagged});
   }
 
   void ternary(const OpcodeInfo& row, const Immediates& immediates) {
     const Value c = pop(), b = pop(), a = pop();
-    push({functions_.apply(row.opcode, {a.number, b.number, c.number}, immediates), a.surface});
+    push({functions_.apply(row.opcode, {a.number, b.number, c.number}, immediates), a.surface, a.tagged});
   }
 
   // Returns the surface to which the value of a Binary belongs: that of the operand chosen, or that of the first.
@@ -156,7 +160,21 @@ class ProgramPrinter {
     if (row.opcode == Opcode::Drop) points_.pop_back();
     if (row.opcode == Opcode::Tee) locals_[operand] = values_.back();
     if (row.opcode == Opcode::Load) values_.push_back(locals_[operand]);
-    if (row.opcode == Opcode::Tag) values_.back().surface = std::to_string(operand);
+    if (row.opcode == Opcode::Tag && result_ == Result::Surface) {
+      Value value = pop();
+      tag(value, std::to_string(operand));
+      push(std::move(value));
+    }
+  }
+
+  // Assigns a surface to a value that has none. A tag leaves a value that has one, as in the machine.
+  static void tag(Value& value, const std::string& surface) {
+    if (value.surface == "-1") {
+      value.surface = surface;
+    } else if (!value.tagged) {
+      value.surface = fmt::format("({0} < 0 ? {1} : {0})", value.surface, surface);
+    }
+    value.tagged = true;
   }
 
   Value pop() {
@@ -179,7 +197,7 @@ class ProgramPrinter {
   Value named(const Value& value) {
     const std::string& text = value.number.text;
     const bool plain = text.find_first_of(" (,") == text.npos || text.starts_with("number(");
-    return plain ? value : Value{name_value(value.number), value.surface};
+    return plain ? value : Value{name_value(value.number), value.surface, value.tagged};
   }
   Expression name_value(const Expression& value) {
     return line(language_.number_type, fmt::format("d{}", ++value_names_), value, comment_);

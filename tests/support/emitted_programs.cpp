@@ -84,18 +84,26 @@ void add_operands(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
-// Adds, of every choice, a program whose operands belong to different surfaces.
+// Returns a choice between a ball of surface 2 and a box of surface 1. If `is_outer`, the tag of surface 1 follows
+// the choice: the ball keeps its surface. An outer tag once replaced inner ones in emitted GLSL.
+vm::Program choice_program(const vm::OpcodeInfo& row, bool is_outer, Random& random) {
+  vm::Program program;
+  program.append(Opcode::Sphere, 0, {0.9}, {});
+  program.append(Opcode::Tag, 2, {}, {});
+  program.append(Opcode::Box, 0, {1.4, 0.4, 0.6}, {});
+  if (!is_outer) program.append(Opcode::Tag, 1, {}, {});
+  program.append(row.opcode, 0, random_immediates(row, vm::opcode_word(row.opcode), random), {});
+  if (is_outer) program.append(Opcode::Tag, 1, {}, {});
+  return program;
+}
+
+// Adds, of every choice, programs whose operands belong to different surfaces.
 void add_choices(std::vector<EmittedProgram>& programs, Random& random) {
   for (int i = 0; i < vm::kOpcodeCount; ++i) {
     const vm::OpcodeInfo& row = vm::info(static_cast<Opcode>(i));
     if (row.form != Form::Binary || row.choice == vm::Choice::None) continue;
-    vm::Program program;
-    program.append(Opcode::Sphere, 0, {0.9}, {});
-    program.append(Opcode::Tag, 2, {}, {});
-    program.append(Opcode::Box, 0, {1.4, 0.4, 0.6}, {});
-    program.append(Opcode::Tag, 1, {}, {});
-    program.append(row.opcode, 0, random_immediates(row, vm::opcode_word(row.opcode), random), {});
-    programs.push_back(named(fmt::format("choice_{}", row.mnemonic), std::move(program)));
+    programs.push_back(named(fmt::format("choice_{}", row.mnemonic), choice_program(row, false, random)));
+    programs.push_back(named(fmt::format("outer_{}", row.mnemonic), choice_program(row, true, random)));
   }
 }
 
