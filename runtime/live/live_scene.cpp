@@ -76,8 +76,12 @@ json surface_of(const CompiledScene& scene, const compiler::Surface& surface, co
   const float through = clear ? point.transmission : 0;
   return {{"name", surface.name},
           {"color", list(glm::mix(point.base_color, point.transmission_color, through))},
-          {"roughness", glossy ? 0.05 : plain ? 1 : point.roughness},
-          {"metalness", mirror ? 1 : plain || glossy ? 0 : point.metalness},
+          {"roughness", glossy  ? 0.05
+                        : plain ? 1
+                                : point.roughness},
+          {"metalness", mirror            ? 1
+                        : plain || glossy ? 0
+                                          : point.metalness},
           {"emission", list(glow)}};
 }
 
@@ -152,7 +156,8 @@ std::pair<dvec3, dvec3> means_of(const compiler::Background::Image& background) 
     // Rows near the poles show less of the sphere.
     const double weight = std::sin(std::numbers::pi * (y + 0.5) / image->height);
     for (int x = 0; x < image->width; ++x) {
-      const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x);
+      const auto at =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x);
       sums[half] += weight * dvec3(image->pixels[at]);
       weights[half] += weight;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -226,11 +227,10 @@ Answer ViewSession::scene_answer() const {
                  {"messages", state.messages},
                  {"text", state.text},
                  {"live", nullptr},
-                 {"name", source_name(arguments_.path)},
+                 {"name", std::filesystem::path(arguments_.path).filename().string()},
                  {"parameters", json::array()}};
   if (!state.loaded) return answer_of(answer);
   const compiler::CompiledScene& scene = state.loaded->scene();
-  answer["name"] = scene.source.name();
   answer["live"] = runtime::live_scene(scene);
   answer["parameters"] = parameters_json(*state.loaded);
   answer["exposure"] = scene.film.exposure;
