@@ -263,21 +263,22 @@ Answer ViewSession::pixel_answer_at(const Query& query) {
 }
 
 Answer ViewSession::pixels_answer(const Query& query) {
-  const auto picture = picture_.latest();
-  if (!picture) return problem(503, "there is no picture yet");
+  const auto loaded = scene_.state().loaded;
+  const PictureView view = picture_.view();
+  if (!loaded || view.width == 0) return problem(503, "there is no picture yet");
   const auto offset = to_number(query("offset"));
-  const compiler::CompiledScene& scene = picture->scene->scene();
+  const compiler::CompiledScene& scene = loaded->scene();
   if (!offset || *offset < 0 || *offset >= static_cast<double>(scene.surface.program().words.size())) {
     return problem(400, "offset is the place of an instruction");
   }
   const std::lock_guard lock(asking_);
-  // Pictures of one view and scene differ in samples alone; the first of them counts.
-  if (!relevance_ || relevance_view_ != std::pair(picture->view.id, picture->scene->version)) {
-    relevance_ = std::make_unique<Relevance>(scene, picture->camera, picture->view.width, picture->view.height);
-    relevance_view_ = {picture->view.id, picture->scene->version};
+  if (!relevance_ || relevance_view_ != std::pair(view.id, loaded->version)) {
+    const compiler::Camera camera = view_camera(scene, view.pose, view.width, view.height);
+    relevance_ = std::make_unique<Relevance>(scene, camera, view.width, view.height);
+    relevance_view_ = {view.id, loaded->version};
   }
   const auto pixels = relevance_->pixels(static_cast<std::uint32_t>(*offset));
-  return image_answer(mask_file(pixels, relevance_->width(), relevance_->height()), picture->number);
+  return image_answer(mask_file(pixels, relevance_->width(), relevance_->height()), 0);
 }
 
 Answer ViewSession::listing_answer(const Query& query) {

@@ -136,7 +136,8 @@ TEST_CASE("view: a saved file shows; a mistake keeps the last good scene", "[cli
   std::string text = kText;
   text.replace(text.find("sphere"), 6, "spere");
   folder.write("scene.fathom", text);
-  const json bad = client.wait_for("scene", [](const json& scene) { return scene["good"] == false; });
+  const json bad = client.wait_for("scene", [&](const json& scene) { return scene["text"] == text; });
+  CHECK(bad["good"] == false);
   CHECK(contains(bad["messages"], "did you mean `sphere`?"));
   CHECK(contains(bad["messages"], "^^^^^"));
   CHECK(bad["text"] == text);
@@ -144,7 +145,8 @@ TEST_CASE("view: a saved file shows; a mistake keeps the last good scene", "[cli
   text.replace(text.find("spere"), 5, "torus");
   text.replace(text.find("(r)"), 3, "(r, 0.1)");
   folder.write("scene.fathom", text);
-  const json mended = client.wait_for("scene", [](const json& scene) { return scene["good"] == true; });
+  const json mended = client.wait_for("scene", [&](const json& scene) { return scene["text"] == text; });
+  CHECK(mended["good"] == true);
   CHECK(mended["messages"] == "");
   CHECK(mended["live"]["shader"] != shader);
 }
