@@ -367,6 +367,13 @@ class Lowering {
 
 }  // namespace
 
+bool is_in_import(const vm::DebugEntry& entry, const Source& source) {
+  const auto names = [&](const Import& import) {
+    return entry.symbol.ends_with(source.in_import(import.file->base()));
+  };
+  return std::ranges::any_of(source.imports(), names);
+}
+
 bool has_more_values(const Scene& scene, std::size_t most) { return ValueCounter(scene.graph, most).more(scene.root); }
 
 std::optional<vm::Program> lower(const Graph& graph, NodeId root, const Source& source,

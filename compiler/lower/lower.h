@@ -18,6 +18,9 @@ inline std::optional<vm::Program> lower(const Scene& scene, const Source& source
   return lower(scene.graph, scene.root, source, max_instructions);
 }
 
+// True if the entry's line is one of a file that `source` imports: the entry's symbol then ends with that file.
+bool is_in_import(const vm::DebugEntry& entry, const Source& source);
+
 // True if the scene's program computes more than `most` values, each of which takes at least one instruction. Takes a
 // tenth of the time and the memory of lower().
 bool has_more_values(const Scene& scene, std::size_t most);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string_view>
 
+#include "compiler/lower/lower.h"
 #include "runtime/chart/markup.h"
 
 namespace fathom::cli {
@@ -12,10 +14,12 @@ namespace {
 
 using runtime::escape_markup;
 
-// Returns the cost of each line, as a share of the program's, in [0,1].
-std::map<std::uint32_t, double> cost_by_line(const vm::VerifiedProgram& program) {
+// Returns the cost of each line of the scene's own file, as a share of the program's, in [0,1].
+std::map<std::uint32_t, double> cost_by_line(const compiler::CompiledScene& scene) {
+  const vm::VerifiedProgram& program = scene.surface;
   std::map<std::uint32_t, double> shares;
   for (const vm::DebugEntry& entry : program.program().debug) {
+    if (is_in_import(entry, scene.source)) continue;
     const double cost = static_cast<double>(vm::instruction_cost(program.program().words[entry.offset]));
     shares[entry.line] += cost / std::max(1.0, static_cast<double>(program.cost()));
   }
@@ -68,7 +72,7 @@ std::string highlighted(std::string_view line, bool& is_open) {
 }  // namespace
 
 std::string source_lines(const compiler::CompiledScene& scene) {
-  const std::map<std::uint32_t, double> shares = cost_by_line(scene.surface);
+  const std::map<std::uint32_t, double> shares = cost_by_line(scene);
   std::string_view rest = scene.source.text();
   std::string html;
   bool is_open = false;

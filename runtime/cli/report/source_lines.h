@@ -9,7 +9,7 @@
 namespace fathom::cli {
 
 // Returns one <tr> per line of the scene's file, of the columns number, cost and text. The cost is the share of the
-// surface program's instructions that the line causes.
+// surface program's instructions that the line causes; instructions of imports belong to no line.
 std::string source_lines(const compiler::CompiledScene& scene);
 
 }  // namespace fathom::cli

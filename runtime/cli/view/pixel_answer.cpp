@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "compiler/lower/lower.h"
 #include "runtime/field/field.h"
 #include "runtime/march/march.h"
 #include "runtime/sampling/camera.h"
@@ -67,16 +68,18 @@ std::string certificate(const compiler::CompiledScene& scene, const RayHit& hit)
 }
 
 // Returns the source position of a surface: of its `tag`, or of the last instruction of a program without tags.
-const vm::DebugEntry* find_surface(const vm::VerifiedProgram& program, std::uint32_t surface) {
-  const vm::Program& code = program.program();
+// Null if it is not in the scene's own file.
+const vm::DebugEntry* find_surface(const compiler::CompiledScene& scene, std::uint32_t surface) {
+  const vm::Program& code = scene.surface.program();
   const vm::DebugEntry* found = nullptr;
   bool has_tags = false;
   for (const vm::DebugEntry& entry : code.debug) {
     const std::uint32_t word = code.words[entry.offset];
     const bool is_tag = vm::find_opcode(word & 0xff)->mnemonic == "tag";
-    if (is_tag && vm::operand_of(word) == surface) return &entry;
     has_tags |= is_tag;
-    if (entry.line > 0) found = &entry;
+    if (entry.line == 0 || is_in_import(entry, scene.source)) continue;
+    if (is_tag && vm::operand_of(word) == surface) return &entry;
+    found = &entry;
   }
   return has_tags ? nullptr : found;
 }
@@ -92,7 +95,7 @@ void add_surface(json& answer, const compiler::CompiledScene& scene, glm::dvec3 
   const compiler::Surface& surface = scene.surfaces[value.surface];
   answer["object"] = surface.name;
   answer["material"] = scene.materials[surface.material].name;
-  if (const vm::DebugEntry* entry = find_surface(scene.surface, value.surface)) {
+  if (const vm::DebugEntry* entry = find_surface(scene, value.surface)) {
     answer["line"] = entry->line, answer["column"] = entry->column;
   }
 }

@@ -51,6 +51,20 @@ TEST_CASE("report: one page has the picture, the source, the program and the cos
   CHECK(contains(page, "<code>fathom report scene.fathom -o page.html</code>"));
 }
 
+// Lines of an imported file once counted as lines of the scene's own file with the same numbers.
+TEST_CASE("report: what an import costs belongs to no line of the scene", "[cli][report]") {
+  const Folder folder;
+  folder.write("parts.fathom", "fathom 1\n\n\ndef part() = torus(1, 0.2)\n");
+  folder.write("scene.fathom",
+               "fathom 1\nimport \"parts.fathom\" as parts\nobject sphere(0.5) + parts.part()\n// four\n"
+               "camera (position = [0, 0, 4], target = [0, 0, 0])\nfilm (width = 8, height = 8)\n"
+               "background [1, 1, 1]\nrender (spp = 1)\n");
+  REQUIRE(folder.run("report scene.fathom -o page.html").code == 0);
+  const std::string page = folder.read("page.html");
+  CHECK(contains(page, "<tr><td>3<td><meter"));
+  CHECK(contains(page, "<tr><td>4<td><td>"));
+}
+
 TEST_CASE("report: its name, its size and a chart can be chosen", "[cli][report]") {
   const Folder folder;
   folder.write("chart.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>alert(1)</script></svg>");
