@@ -11,26 +11,7 @@
 namespace fathom::cli {
 namespace {
 
-struct Map {
-  const char* name;  // of the file and of the counted quantity
-  double runtime::PixelMeans::*value;
-};
-constexpr Map kMaps[] = {
-    {"evaluations", &runtime::PixelMeans::evaluations},
-    {"instructions", &runtime::PixelMeans::instructions},
-};
-
-std::vector<float> values_of(const runtime::Film& film, const Map& map) {
-  std::vector<float> values;
-  const runtime::PixelRect area = film.area();
-  values.reserve(area.pixels());
-  for (int y = area.y0; y < area.y1; ++y) {
-    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*map.value));
-  }
-  return values;
-}
-
-std::string describe_values(const std::vector<float>& values, const Map& map) {
+std::string describe_values(const std::vector<float>& values, const CostMap& map) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   double sum = 0;
   for (const float value : values) sum += static_cast<double>(value);
@@ -40,17 +21,27 @@ std::string describe_values(const std::vector<float>& values, const Map& map) {
 
 }  // namespace
 
+std::vector<float> cost_values(const runtime::Film& film, const CostMap& map) {
+  std::vector<float> values;
+  const runtime::PixelRect area = film.area();
+  values.reserve(area.pixels());
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*map.value));
+  }
+  return values;
+}
+
 std::vector<std::string> cost_map_files(const std::string& path) {
   std::vector<std::string> files;
-  for (const Map& map : kMaps) files.push_back(with_suffix(path, map.name));
+  for (const CostMap& map : kCostMaps) files.push_back(with_suffix(path, map.name));
   return files;
 }
 
 std::optional<std::string> write_cost_maps(const std::string& path, const runtime::Film& film,
                                            std::vector<std::string>& lines) {
-  for (const Map& map : kMaps) {
+  for (const CostMap& map : kCostMaps) {
     const std::string file = with_suffix(path, map.name);
-    const std::vector<float> values = values_of(film, map);
+    const std::vector<float> values = cost_values(film, map);
     int height = film.height();
     std::string meaning = describe_values(values, map);
     std::optional<std::string> problem;

@@ -15,6 +15,18 @@
 
 namespace fathom::cli {
 
+struct CostMap {
+  const char* name;  // of the file and of the counted quantity
+  double runtime::PixelMeans::*value;
+};
+inline constexpr CostMap kCostMaps[] = {
+    {"evaluations", &runtime::PixelMeans::evaluations},
+    {"instructions", &runtime::PixelMeans::instructions},
+};
+
+// Returns a map's values, [y][x], of a film with the cost layer.
+std::vector<float> cost_values(const runtime::Film& film, const CostMap& map);
+
 // Returns the files written for the `path` of --cost-map.
 std::vector<std::string> cost_map_files(const std::string& path);
 

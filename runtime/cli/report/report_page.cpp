@@ -10,6 +10,7 @@
 #include "runtime/cli/dump/check_report.h"
 #include "runtime/cli/dump/operation_table.h"
 #include "runtime/cli/options/version.h"
+#include "runtime/cli/picture/cost_map.h"
 #include "runtime/cli/plan/base64.h"
 #include "runtime/cli/report/report_files.h"
 #include "runtime/cli/report/source_lines.h"
@@ -36,15 +37,15 @@ std::string figure(const runtime::ByteImage& image, std::string_view caption) {
       escape_markup(caption), image.width, image.height, data_address("image/png", text));
 }
 
-// Returns the map of a count per sample, with its scale.
-std::string map_figure(const runtime::Film& film, double runtime::PixelMeans::*value, const char* name) {
-  std::vector<float> values;
-  const runtime::PixelRect area = film.area();
-  for (int y = area.y0; y < area.y1; ++y) {
-    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*value));
+// Returns the maps of counts per sample, with their scales.
+std::string cost_figures(const runtime::Film& film) {
+  std::string html;
+  for (const CostMap& map : kCostMaps) {
+    const std::vector<float> values = cost_values(film, map);
+    const runtime::ColorScale scale = runtime::scale_for(values, true);
+    html += figure(draw_map(values, film.width(), film.height(), scale), fmt::format("{} per sample", map.name));
   }
-  const runtime::ColorScale scale = runtime::scale_for(values, true);
-  return figure(draw_map(values, film.width(), film.height(), scale), name);
+  return html;
 }
 
 std::string pre(std::string_view text) { return fmt::format("<pre tabindex=\"0\">{}</pre>\n", escape_markup(text)); }
@@ -73,9 +74,7 @@ std::vector<Section> sections_of(const ReportContents& contents) {
       {"layers", "Layers",
        "<div class=\"pictures\">\n" + layer(Layer::Albedo, "albedo") + layer(Layer::Normal, "normal") +
            layer(Layer::Depth, "depth") + "</div>\n"},
-      {"cost", "Cost",
-       "<div class=\"pictures\">\n" + map_figure(film, &runtime::PixelMeans::evaluations, "evaluations per sample") +
-           map_figure(film, &runtime::PixelMeans::instructions, "instructions per sample") + "</div>\n"},
+      {"cost", "Cost", "<div class=\"pictures\">\n" + cost_figures(film) + "</div>\n"},
       {"profile", "Profile", pre(to_table(contents.render.stats))},
       {"operations", "Operations", pre(operation_table(scene.surface) + "\n" + cost_by_node(scene.surface))},
       {"program", "Program", pre(vm::disassemble(scene.surface))}};

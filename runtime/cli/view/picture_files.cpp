@@ -5,6 +5,7 @@
 #include <span>
 
 #include "runtime/chart/colormap.h"
+#include "runtime/cli/picture/cost_map.h"
 #include "runtime/denoise/denoise.h"
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_io.h"
@@ -26,13 +27,8 @@ std::optional<Layer> find_layer(std::string_view name) {
 }
 
 // Returns the map of a cost, logarithmic from dark violet to yellow; black where there is none.
-Bytes cost_file(const runtime::Film& film, double runtime::PixelMeans::*value) {
-  const runtime::PixelRect area = film.area();
-  std::vector<float> values;
-  values.reserve(area.pixels());
-  for (int y = area.y0; y < area.y1; ++y) {
-    for (int x = area.x0; x < area.x1; ++x) values.push_back(static_cast<float>(film.means(x, y).*value));
-  }
+Bytes cost_file(const runtime::Film& film, const CostMap& map) {
+  const std::vector<float> values = cost_values(film, map);
   const runtime::ColorScale scale = runtime::scale_for(values, true);
   runtime::ByteImage image{film.width(), film.height(), {}};
   for (const float each : values) {
@@ -60,8 +56,9 @@ Bytes mask_file(const std::vector<bool>& pixels, int width, int height) {
 
 Bytes PictureFiles::encode(const std::shared_ptr<const Picture>& picture, std::string_view layer, double exposure,
                            Denoise denoise) {
-  if (layer == "evaluations") return cost_file(picture->film, &runtime::PixelMeans::evaluations);
-  if (layer == "instructions") return cost_file(picture->film, &runtime::PixelMeans::instructions);
+  for (const CostMap& map : kCostMaps) {
+    if (layer == map.name) return cost_file(picture->film, map);
+  }
   const std::optional<Layer> found = find_layer(layer);
   if (!found) return {};
   const compiler::Film& film = picture->scene->scene().film;
