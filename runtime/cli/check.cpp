@@ -76,16 +76,11 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   return culprits.empty() ? kDone : kFoundProblems;
 }
 
-// Compiles with all warnings. `graph` receives the scene graph before the first pass.
-std::variant<compiler::CompiledScene, ExitCode> compile_checked(const SceneInput& input,
-                                                                const SceneArguments& arguments,
-                                                                compiler::Scene& graph, const Streams& streams) {
-  compiler::CompileOptions options;
-  options.lint = true;
-  options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
-    if (pass == "graph") graph = stage;
-  };
-  auto compiled = compile_scene(input, arguments, streams, options);
+// Compiles the scene for the report: errors in it are problems found.
+std::variant<compiler::CompiledScene, ExitCode> compile_for_report(const SceneInput& input,
+                                                                   const SceneArguments& arguments,
+                                                                   compiler::Scene& graph, const Streams& streams) {
+  auto compiled = compile_checked(input, arguments, graph, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code == kBadScene ? kFoundProblems : *code;
   return compiled;
 }
@@ -100,7 +95,7 @@ void print_report(const CheckRequest& request, const compiler::CompiledScene& sc
 
 ExitCode check_moment(const CheckRequest& request, const SceneInput& input, const Streams& streams) {
   compiler::Scene graph;
-  const auto compiled = compile_checked(input, request.scene, graph, streams);
+  const auto compiled = compile_for_report(input, request.scene, graph, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   print_report(request, scene, graph, streams);
@@ -139,7 +134,7 @@ ExitCode check_frames(const CheckRequest& request, SceneInput& input, const Stre
     const SceneArguments arguments = sequence.at(request.scene, frame);
     compiler::Scene graph;
     BufferedMessages held(streams);
-    const auto compiled = compile_checked(input, arguments, graph, held.streams());
+    const auto compiled = compile_for_report(input, arguments, graph, held.streams());
     held.release_if_new(last);
     const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
     if (scene && !std::exchange(reported, true)) print_report(request, *scene, graph, streams);

@@ -58,12 +58,9 @@ std::variant<compiler::Report, ExitCode> report_of(const PreparedRender& picture
                                                    std::ostream& messages, const Streams& streams) {
   compiler::Scene graph;
   compiler::CompileOptions options;
-  options.lint = options.stage = true;
-  options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
-    if (pass == "graph") graph = stage;
-  };
-  const auto compiled = compile_scene({input.source, std::nullopt}, picture.request.scene,
-                                      {streams.in, messages, messages}, std::move(options));
+  options.stage = true;
+  const auto compiled = compile_checked({input.source, std::nullopt}, picture.request.scene, graph,
+                                        {streams.in, messages, messages}, std::move(options));
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   return make_report(graph, std::get<compiler::CompiledScene>(compiled).surfaces);
 }

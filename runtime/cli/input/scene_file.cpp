@@ -164,6 +164,17 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   return std::move(*scene);
 }
 
+std::variant<compiler::CompiledScene, ExitCode> compile_checked(const SceneInput& input,
+                                                                const SceneArguments& arguments,
+                                                                compiler::Scene& graph, const Streams& streams,
+                                                                compiler::CompileOptions options) {
+  options.lint = true;
+  options.on_pass = [&](std::string_view pass, const compiler::Scene& stage) {
+    if (pass == "graph") graph = stage;
+  };
+  return compile_scene(input, arguments, streams, std::move(options));
+}
+
 std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,
                                                            const Streams& streams) {
   if (input.stored && !input.stored->contents.text) return fail_without_text(arguments, streams);

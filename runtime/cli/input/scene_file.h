@@ -38,6 +38,13 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
                                                               const Streams& streams,
                                                               compiler::CompileOptions options = {});
 
+// Compiles the scene's text with all warnings. `graph` receives the graph before the first pass, which
+// compiler::make_report() needs.
+std::variant<compiler::CompiledScene, ExitCode> compile_checked(const SceneInput& input,
+                                                                const SceneArguments& arguments,
+                                                                compiler::Scene& graph, const Streams& streams,
+                                                                compiler::CompileOptions options = {});
+
 // Reads the scene's animation, or returns the exit code after a message. Also loads the scene's imports into `input`,
 // so that all frames use the same files.
 std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, const SceneArguments& arguments,

@@ -32,17 +32,26 @@ Listing list_passes(const LoadedScene& loaded) {
   return {200, diff.text()};
 }
 
-Listing list_graph(const LoadedScene& loaded, std::string_view wanted) {
-  compiler::Scene first, last;
+Listing list_graph(const LoadedScene& loaded) {
+  compiler::Scene graph;
   compiler::CompileOptions options;
-  options.on_pass = [&](std::string_view pass, const compiler::Scene& scene) {
-    last = scene;
-    if (pass == "graph") first = scene;
-  };
+  options.on_pass = [&](std::string_view, const compiler::Scene& scene) { graph = scene; };
   Listing listing = compile_again(loaded, std::move(options));
   if (listing.status != 200) return listing;
-  if (wanted == "graph") return {200, print_graph(last, loaded.scene().source)};
-  return {200, report_text(loaded.scene(), make_report(first, loaded.scene().surfaces))};
+  return {200, print_graph(graph, loaded.scene().source)};
+}
+
+Listing list_check(const LoadedScene& loaded) {
+  compiler::Scene graph;
+  compiler::CompileOptions options;
+  options.stage = true;
+  std::istringstream in;
+  std::ostringstream messages;
+  const auto compiled = compile_checked({loaded.input.source, std::nullopt}, loaded.arguments, graph,
+                                        {in, messages, messages}, std::move(options));
+  const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
+  if (!scene) return {422, std::move(messages).str()};
+  return {200, std::move(messages).str() + report_text(*scene, make_report(graph, scene->surfaces))};
 }
 
 Listing list_run(const compiler::CompiledScene& scene, glm::dvec3 point) {
@@ -63,7 +72,7 @@ Listing make_listing(const LoadedScene& loaded, std::string_view kind, std::opti
   const bool has_text = !loaded.input.source.text().empty();
   if (kind == "passes" || kind == "graph" || kind == "check") {
     if (!has_text) return {422, "the file holds programs without the scene they were compiled from"};
-    return kind == "passes" ? list_passes(loaded) : list_graph(loaded, kind);
+    return kind == "passes" ? list_passes(loaded) : kind == "graph" ? list_graph(loaded) : list_check(loaded);
   }
   if (kind != "run" && kind != "region") return {400, "kind is one of passes, graph, check, run, region"};
   if (!point) return {400, "at=X,Y,Z is missing"};
