@@ -164,11 +164,15 @@ def test(scenes, exceptions, scratch, screenshots=None):
                 driver.quit()
             driver = None
             continue
-        bad = [row for row, share in (("normals", normal), ("colours", color)) if share < LEAST_SHARE]
-        unexcused = [row for row in bad if row not in excused]
-        failures += bool(unexcused)
-        remarks = [f"FAILED: {', '.join(unexcused)}"] * bool(unexcused) + [
-            f"{row}: {excused[row]}" for row in bad if row in excused]
+        failed, remarks = [], []
+        for row, share in (("normals", normal), ("colours", color)):
+            reason, least = excused.get(row, ("", LEAST_SHARE))
+            if share < least:
+                failed.append(row)
+            elif share < LEAST_SHARE:
+                remarks.append(f"{row}: {reason}")
+        failures += bool(failed)
+        remarks += [f"FAILED: {', '.join(failed)}"] if failed else []
         print(f"{name:32} {normal:8.2%} {color:8.2%} {compiled:6.1f} s {drawn:6.1f} s  {'; '.join(remarks)}".rstrip(),
               flush=True)
     if driver:
