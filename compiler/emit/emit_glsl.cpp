@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "compiler/emit/emit.h"
 #include "compiler/emit/print_program.h"
 
@@ -16,23 +19,50 @@ constexpr std::string_view kGlslHead = R"(// {0}
 {3}
 )";
 
+std::string distance_head(const std::string& prefix) { return fmt::format("float {}distance(vec3 p)", prefix); }
+std::string surface_head(const std::string& prefix) { return fmt::format("int {}surface(vec3 p)", prefix); }
+
+// Returns the functions NAME_distance and, with `surfaces`, NAME_surface, after those that they call.
+std::string print_functions(const Language& language, const CompiledScene& scene, bool surfaces) {
+  FunctionLibrary functions(language);
+  std::string bodies;
+  const auto print = [&](std::string_view head, const vm::VerifiedProgram& program, Result result) {
+    bodies += fmt::format("\n{} {{\n{}}}\n", head, print_program(language, program, scene.origin, functions, result));
+  };
+  print(distance_head(language.prefix), scene.distance, Result::Distance);
+  if (surfaces) print(surface_head(language.prefix), scene.surface, Result::Surface);
+  return functions.text() + bodies;
+}
+
+// True for numbers that are likelier to mean no translation, no rotation or no limit than to be chosen.
+bool is_structural(double value) { return value == 0 || std::abs(value) == 1 || std::isinf(value); }
+
 }  // namespace
 
 std::string emit_glsl(const CompiledScene& scene, const std::string& name, bool surfaces) {
   Language language = kGlsl;
   language.prefix = name + '_';
-  FunctionLibrary functions(language);
-  const auto function = [&](std::string_view head, const vm::VerifiedProgram& program, Result result) {
-    return fmt::format("\n{} {{\n{}}}\n", head, print_program(language, program, scene.origin, functions, result));
-  };
-  const std::string distance_head = fmt::format("float {}_distance(vec3 p)", name);
-  const std::string surface_head = fmt::format("int {}_surface(vec3 p)", name);
-  std::string bodies = function(distance_head, scene.distance, Result::Distance);
-  if (surfaces) bodies += function(surface_head, scene.surface, Result::Surface);
-  const std::string declared = surfaces ? "//     " + surface_head + '\n' : "";
+  const std::string declared = surfaces ? "//     " + surface_head(language.prefix) + '\n' : "";
   const std::string listed =
       surfaces ? "//\n// The number of the surface to which the distance belongs:\n//\n" + list_surfaces(scene) : "";
-  return fmt::format(fmt::runtime(kGlslHead), describe(scene), name, declared, listed) + functions.text() + bodies;
+  return fmt::format(fmt::runtime(kGlslHead), describe(scene), name, declared, listed) +
+         print_functions(language, scene, surfaces);
+}
+
+GlslTemplate emit_glsl_template(const CompiledScene& scene, const std::string& name) {
+  GlslTemplate result;
+  Language language = kGlsl;
+  language.prefix = name + '_';
+  language.has_comments = false;
+  language.immediate = [&](double value) {
+    const std::size_t i = result.numbers.size();
+    if (is_structural(value) || i == kMaxGlslNumbers) return language.literal(value);
+    result.numbers.push_back(static_cast<float>(value));
+    return fmt::format("{}_numbers[{}].{}", name, i / 4, "xyzw"[i % 4]);
+  };
+  result.text = print_functions(language, scene, true);
+  result.numbers.resize((std::max<std::size_t>(1, result.numbers.size()) + 3) / 4 * 4);
+  return result;
 }
 
 }  // namespace fathom::compiler

@@ -47,7 +47,9 @@ const Language kCpp{
     .has_double = true,
     .point = "vec3{{{0}, {1}, {2}}}",
     .literal = cpp_literal,
+    .immediate = cpp_literal,
     .number = cpp_number,
+    .has_comments = true,
     .taken = kCppTaken,
 };
 // GLSL allows `const` only for values that the compiler can compute.
@@ -62,7 +64,9 @@ const Language kGlsl{
     .has_double = false,
     .point = "vec3({0}, {1}, {2})",
     .literal = glsl_literal,
+    .immediate = glsl_literal,
     .number = glsl_number,
+    .has_comments = true,
     .taken = kGlslTaken,
 };
 

@@ -2,6 +2,7 @@
 // (vm/record/operations.def).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,8 +26,11 @@ struct Language {
   std::string_view immediate_type;          // of function parameters that are numbers of the scene
   bool has_double;                          // in addition to float
   std::string_view point;                   // pattern that makes a point of {0}, {1}, {2}
-  std::string (*literal)(double value);     // prints an argument for such a parameter
+  std::string (*literal)(double value);     // prints a number of a formula
+  // Prints a number of the scene, an argument for such a parameter.
+  std::function<std::string(double value)> immediate;
   Expression (*number)(std::string_view);   // turns a literal or such a parameter into a number
+  bool has_comments;                        // with the names of the scene's nodes
   std::span<const std::string_view> taken;  // names that parameters and functions cannot have
 
   // Returns `name`, or a similar name that is not taken.

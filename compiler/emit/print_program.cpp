@@ -45,10 +45,11 @@ class ProgramPrinter {
     points_.push_back({"p"});
     if (origin != glm::dvec3(0)) {
       const double by[] = {origin.x, origin.y, origin.z};
-      points_ = {line("vec3", "q", functions_.apply(Opcode::Translate, points_, {{}, by}), "the scene's origin")};
+      points_ = {line("vec3", "q", functions_.apply(Opcode::Translate, points_, {{}, by}),
+                      language_.has_comments ? "the scene's origin" : "")};
     }
     for (std::size_t i = 0; at_ < program_.words.size(); ++i) {
-      const bool known = i < program_.debug.size();
+      const bool known = language_.has_comments && i < program_.debug.size();
       comment_ = known && program_.debug[i].symbol.ends_with('"') ? program_.debug[i].symbol : "";
       instruction();
     }
@@ -147,7 +148,7 @@ class ProgramPrinter {
       case vm::Source::Stack:
         return pop();
       case vm::Source::Constant:
-        return {language_.number(language_.literal(program_.doubles[leading_++]))};
+        return {language_.number(language_.immediate(program_.doubles[leading_++]))};
       case vm::Source::Local:
         return locals_[local];
       default:

@@ -1,5 +1,7 @@
 // Tests of `fathom emit glsl`. The reference compiler checks that the output is GLSL. The values are checked by
 // compiling the output with these tests as C++ over GLM, whose names are GLSL's.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -11,6 +13,7 @@
 #include <string>
 
 #include "compiler/emit/emit.h"
+#include "compiler/emit/language.h"
 #include "emitted_programs_glsl.h"
 #include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
@@ -45,7 +48,66 @@ std::string shader(const std::string& version) {
   return text + "void main() {\n  colour = gl_FragCoord;\n  float d = 0.0;\n" + sum + "  colour = vec4(d);\n}\n";
 }
 
+// Returns the functions of emitted GLSL without comments and parentheses, which templates do not have or need.
+std::string bare(const std::string& text) {
+  static const std::regex kComment(" *//[^\n]*\n"), kParenthesis("[()]");
+  const std::string code = std::regex_replace(text, kComment, "\n");
+  return std::regex_replace(code.substr(code.find_first_not_of('\n')), kParenthesis, "");
+}
+
+// Returns a template's functions with their numbers in place.
+std::string filled(const compiler::GlslTemplate& glsl) {
+  static const std::regex kNumber("[A-Za-z0-9_]+_numbers\\[([0-9]+)\\]\\.([xyzw])");
+  const std::string& text = glsl.text;
+  std::string result;
+  std::size_t at = 0;
+  for (std::sregex_iterator found(text.begin(), text.end(), kNumber), end; found != end; ++found) {
+    const std::size_t i = 4 * std::stoul(found->str(1)) + std::string("xyzw").find(found->str(2));
+    const auto place = static_cast<std::size_t>(found->position());
+    result += text.substr(at, place - at) + compiler::kGlsl.literal(glsl.numbers.at(i));
+    at = place + found->str().size();
+  }
+  return result + text.substr(at);
+}
+
 }  // namespace
+
+TEST_CASE("a template of emitted GLSL with its numbers is the emitted GLSL", "[emit]") {
+  for (const EmittedProgram& program : emitted_programs()) {
+    const compiler::GlslTemplate glsl = compiler::emit_glsl_template(program.scene, program.name);
+    CAPTURE(program.name);
+    CHECK(glsl.numbers.size() % 4 == 0);
+    CHECK(bare(filled(glsl)) == bare(compiler::emit_glsl(program.scene, program.name, true)));
+  }
+}
+
+TEST_CASE("scenes that differ only in numbers and names have the same template of GLSL", "[emit]") {
+  const auto glsl_of = [](const std::string& name, const std::string& radius, const std::string& blend) {
+    return compiler::emit_glsl_template(
+        test::compiled_objects(R"({"name": ")" + name + R"(", "type": "smooth_union", "k": )" + blend +
+                               R"(, "of": [{"type": "sphere", "radius": )" + radius +
+                               R"(}, {"type": "box", "half_size": [1, 2, 3], "translate": [1, 0, )" + radius +
+                               "]}]}"),
+        "scene");
+  };
+  const compiler::GlslTemplate a = glsl_of("a", "1.5", "0.3"), b = glsl_of("other", "1.625", "0.2");
+  CHECK(a.text == b.text);
+  CHECK(a.numbers != b.numbers);
+  CHECK(a.numbers.size() == b.numbers.size());
+}
+
+// Devices need not have room for more.
+TEST_CASE("a template of GLSL has numbers beyond the capacity of a uniform block in its text", "[emit]") {
+  std::string spheres;
+  for (int i = 0; i < 1200; ++i) {
+    spheres += (i > 0 ? ", " : "") +
+               fmt::format(R"({{"type": "sphere", "radius": {}, "translate": [{}, 0, 1]}})", 0.25 + i * 0.001, 3 * i);
+  }
+  const compiler::GlslTemplate glsl = compiler::emit_glsl_template(test::compiled_objects(spheres), "scene");
+  CHECK(glsl.numbers.size() == compiler::kMaxGlslNumbers);
+  CHECK(glsl.text.find("scene_numbers[1023].w") != glsl.text.npos);
+  CHECK(glsl.text.find("scene_numbers[1024]") == glsl.text.npos);
+}
 
 TEST_CASE("emitted GLSL is GLSL ES 3.00 and GLSL 3.30", "[emit]") {
   const test::TemporaryFolder folder;
