@@ -1,5 +1,7 @@
-// Draws the scene by sphere tracing. Before this text come the functions scene_distance and scene_surface, and the
-// constants kSteps, kSurfaces, kLights, kInverseLipschitz, kLo, kHi, kSliceLo, kSliceHi and kExactness.
+// Draws the scene by sphere tracing. Before this text come the functions scene_distance and scene_surface, the array
+// scene_numbers that they read, and the constant kSurfaces. The text depends on the scene's structure alone: its numbers
+// are uniforms, so that a change of a number compiles nothing.
+const int kMaxLights = 8;
 uniform vec2 u_size, u_offset;                    // of the image; from the pixel's middle; pixels
 uniform vec3 u_position, u_target, u_right, u_up, u_forward;  // the camera
 uniform vec2 u_half;                              // half the image's size, at unit distance for a perspective camera
@@ -9,16 +11,21 @@ uniform float u_exposure;                         // factor
 uniform vec3 u_bottom, u_top;                     // the background straight down and straight up
 uniform vec4 u_color[kSurfaces];                  // base colour, roughness
 uniform vec4 u_glow[kSurfaces];                   // emission, metalness
-uniform vec4 u_light[kLights];                    // direction to the light (w 0), or its place (w 1)
+uniform vec4 u_light[kMaxLights];                 // direction to the light (w 0), or its place (w 1)
 // Irradiance, or radiant intensity; radius of the light's body, or of a directional light's disc at unit distance.
-uniform vec4 u_power[kLights];
+uniform vec4 u_power[kMaxLights];
 uniform int u_lights;
+uniform float u_inverse_lipschitz;                // share of a distance that is surely free
+uniform vec3 u_lo, u_hi;                          // the box around the scene
+uniform vec3 u_slice_lo, u_slice_hi;              // the box that a slice shows
+uniform uint u_exactness[(kSurfaces + 15) / 16];  // of the surfaces, 2 bits each, the first ones lowest
 uniform int u_overlay;                            // 0 light, 1 base colour, 2 normal, 3 depth, 4 steps, 5 exactness
 uniform int u_slice_axis;                         // that the slice lies across; -1: no slice
 uniform float u_slice_at, u_slice_step;           // place on the axis, distance between its lines; scene units
 out vec4 o_color;
 
 const float kPi = 3.14159265;
+const int kSteps = 256;       // evaluations per camera ray
 const float kNear = 0.04;     // distance from a surface that counts as none, pixels
 const int kShadowSteps = 64;  // evaluations per ray to a light
 const int kProbes = 5;        // evaluations along the normal
@@ -27,7 +34,7 @@ vec3 background(vec3 d) { return mix(u_bottom, u_top, clamp(0.5 * d.y + 0.5, 0.0
 
 // Returns the part of a ray within the scene's box, empty (x > y) if the ray misses it.
 vec2 clip(vec3 o, vec3 d) {
-  vec3 a = (kLo - o) / d, b = (kHi - o) / d, near = min(a, b), far = max(a, b);
+  vec3 a = (u_lo - o) / d, b = (u_hi - o) / d, near = min(a, b), far = max(a, b);
   return vec2(max(max(near.x, near.y), max(near.z, 0.0)), min(min(far.x, far.y), min(far.z, u_far)));
 }
 
@@ -90,7 +97,7 @@ float trace(Ray ray, float pixel, out float side, out int steps) {
     f *= side;
     float least = max(kNear * pixel * (u_orthographic ? 1.0 : t), 1e-6 * (1.0 + t));
     if (f < least) return t;
-    t += max(f * kInverseLipschitz, least);
+    t += max(f * u_inverse_lipschitz, least);
   }
   return -1.0;
 }
@@ -149,7 +156,7 @@ float shadow(vec3 p, vec3 d, float far, float from, float sharpness) {
     if (back < last) seen = min(seen, sharpness * sqrt(max(f * f - back * back, 0.0)) / max(t - back, from));
     if (f < 0.0) return 0.0;
     last = max(f, 1e-9);
-    t += max(f * kInverseLipschitz, 0.5 * from);
+    t += max(f * u_inverse_lipschitz, 0.5 * from);
   }
   return seen;
 }
@@ -185,7 +192,7 @@ vec3 overlay_color(Hit hit, int surface, int steps) {
   if (u_overlay == 2) return 0.5 + 0.5 * hit.n;
   if (u_overlay == 3) return vec3(1.0 / (1.0 + hit.t / length(u_position - u_target)));
   if (u_overlay == 1) return srgb(u_color[surface].rgb + u_glow[surface].rgb);
-  return kTrust[kExactness[surface >> 4] >> uint(2 * (surface & 15)) & 3u] * (0.75 + 0.25 * hit.n.y);
+  return kTrust[u_exactness[surface >> 4] >> uint(2 * (surface & 15)) & 3u] * (0.75 + 0.25 * hit.n.y);
 }
 
 // Returns a colour and an opacity for the field's value on the slice, as runtime/slice/slice.cpp draws it. `slope`:
@@ -211,14 +218,17 @@ vec3 with_slice(vec3 color, Hit hit, Ray ray) {
   if (u_slice_axis < 0) return color;
   float at = slice_distance(ray), f = hit.slice.x;
   vec3 p = ray.o + at * ray.d;
-  p[u_slice_axis] = clamp(u_slice_at, kSliceLo[u_slice_axis], kSliceHi[u_slice_axis]);
-  if (!(at > 0.0) || at > u_far || any(lessThan(p, kSliceLo)) || any(greaterThan(p, kSliceHi))) return color;
+  p[u_slice_axis] = clamp(u_slice_at, u_slice_lo[u_slice_axis], u_slice_hi[u_slice_axis]);
+  if (!(at > 0.0) || at > u_far || any(lessThan(p, u_slice_lo)) || any(greaterThan(p, u_slice_hi))) return color;
   vec4 slice = slice_color(f, length(hit.slice.yz - f));
   if (hit.t >= 0.0 && hit.t < at) slice.a *= 0.7 * smoothstep(0.0, -0.02 * u_slice_step, f);
   return mix(color, slice.rgb, slice.a);
 }
 
 void main() {
+#ifdef COPY_NUMBERS
+  scene_numbers = u_numbers;
+#endif
   vec2 place = gl_FragCoord.xy + u_offset;
   Ray ray = ray_at(place);
   float pixel = 2.0 * u_half.x / u_size.x, side;

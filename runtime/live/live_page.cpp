@@ -62,8 +62,10 @@ view.setScene(JSON.parse(byId("scene").textContent));
 }  // namespace
 
 std::string live_page(const compiler::CompiledScene& scene) {
+  nlohmann::json values = live_scene(scene);
+  values["exactness"] = live_exactness(scene);
   return fmt::format(fmt::runtime(kPage), fmt::arg("title", escape_markup(scene.source.name())),
-                     fmt::arg("style", kLiveStyle), fmt::arg("scene", as_element(live_scene(scene))),
+                     fmt::arg("style", kLiveStyle), fmt::arg("scene", as_element(values)),
                      fmt::arg("script", kLiveScript), fmt::arg("start", kStart));
 }
 

@@ -1,12 +1,21 @@
 // The WebGL programs and pictures of a live view.
 "use strict";
 
-// The program that draws one scene. It compiles beside the page's work where the browser can.
+// True if a processor draws instead of a graphics card. It reads uniforms so slowly that a copy of them pays for itself:
+// showcase.json draws five times as fast in SwiftShader.
+function isSoftware(gl) {
+  const known = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(known ? known.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
+
+// The program that draws one scene, and all others of the same shader. It compiles beside the page's work where the browser can.
 class LiveProgram {
   #gl;
   #shaders;
   #places = new Map();
   #parallel;
+  #numbers;
 
   constructor(gl, scene) {
     this.#gl = gl;
@@ -16,9 +25,11 @@ class LiveProgram {
     this.#shaders = [
       [gl.VERTEX_SHADER, `#version 300 es
         void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`],
-      [gl.FRAGMENT_SHADER, "#version 300 es\nprecision highp float;\nprecision highp int;\n" + scene.shader],
+      [gl.FRAGMENT_SHADER, "#version 300 es\n" + (isSoftware(gl) ? "#define COPY_NUMBERS\n" : "") +
+        "precision highp float;\nprecision highp int;\n" + scene.shader],
     ].map(([type, text]) => this.#attach(type, text));
     gl.linkProgram(this.program);
+    this.#numbers = gl.createBuffer();
   }
 
   #attach(type, text) {
@@ -44,6 +55,7 @@ class LiveProgram {
   delete() {
     for (const shader of this.#shaders) this.#gl.deleteShader(shader);
     this.#gl.deleteProgram(this.program);
+    this.#gl.deleteBuffer(this.#numbers);
   }
 
   #place(name) {
@@ -62,11 +74,21 @@ class LiveProgram {
     this.#gl.uniform1i(this.#place(name), value);
   }
 
-  setScene(scene) {
+  // Draws with the scene's numbers from now on. The scene has this program's shader.
+  use(scene) {
+    const gl = this.#gl, block = gl.getUniformBlockIndex(this.program, "scene_block");
     this.scene = scene;
+    gl.useProgram(this.program);
+    gl.bindBuffer(gl.UNIFORM_BUFFER, this.#numbers);
+    gl.bufferData(gl.UNIFORM_BUFFER, new Uint32Array(scene.numbers), gl.DYNAMIC_DRAW);
+    if (block !== gl.INVALID_INDEX) gl.uniformBlockBinding(this.program, block, 0);
+    gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, this.#numbers);
     this.set("u_far", scene.far);
     this.set("u_bottom", scene.bottom);
     this.set("u_top", scene.top);
+    this.set("u_inverse_lipschitz", scene.inverseLipschitz);
+    this.set("u_lo", scene.box[0]), this.set("u_hi", scene.box[1]);
+    this.set("u_slice_lo", scene.sliceBox[0]), this.set("u_slice_hi", scene.sliceBox[1]);
     this.setInteger("u_lights", scene.lights.length);
     scene.lights.forEach((light, i) => {
       this.set(`u_light[${i}]`, light.at);
@@ -76,6 +98,13 @@ class LiveProgram {
       this.set(`u_color[${i}]`, [...surface.color, surface.roughness]);
       this.set(`u_glow[${i}]`, [...surface.emission, surface.metalness]);
     });
+    this.showExactness();
+  }
+
+  // Takes over the exactness of the scene's surfaces, if it is known.
+  showExactness() {
+    const {exactness} = this.scene;
+    if (exactness) this.#gl.uniform1uiv(this.#place("u_exactness[0]"), exactness);
   }
 }
 

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -30,11 +33,11 @@ using compiler::Material;
 using glm::dvec3;
 using nlohmann::json;
 
-constexpr int kSteps = 256;  // evaluations per ray
 // Share of a distance that a ray may step in a field without a Lipschitz constant.
 constexpr double kGuessedStep = 0.3;
-// Max number of lights, and distance up to which rays of an unbounded scene are followed, relative to the distance to
-// the camera's target.
+constexpr double kLeastLipschitz = 1e-6;
+// Max number of lights (kMaxLights of live.frag), and distance up to which rays of an unbounded scene are followed,
+// relative to the distance to the camera's target.
 constexpr std::size_t kMaxLights = 8;
 constexpr double kFar = 100;
 constexpr double kSunRadius = 0.00465;  // of the sun's disc, at unit distance
@@ -191,38 +194,29 @@ compiler::Box slice_box(const CompiledScene& scene, const compiler::Camera& came
   return {box.lo + scene.origin, box.hi + scene.origin};
 }
 
-std::string vector_text(dvec3 v) {
-  v = glm::clamp(v, -kEndless, kEndless);
-  return fmt::format("vec3({:.9e}, {:.9e}, {:.9e})", v.x, v.y, v.z);
+json finite_list(dvec3 v) { return list(glm::clamp(v, -kEndless, kEndless)); }
+
+// Returns the bits of numbers, because JSON has no infinity.
+json bits_of(const std::vector<float>& numbers) {
+  json bits = json::array();
+  for (const float number : numbers) bits.push_back(std::bit_cast<std::uint32_t>(number));
+  return bits;
 }
 
-// Returns the exactness of all surfaces, 2 bits each, 16 in a number.
-std::string exactness_text(const CompiledScene& scene) {
-  const std::vector<compiler::Exactness> all = exactness_of_surfaces(scene);
-  std::string numbers;
-  for (std::size_t first = 0; first < std::max<std::size_t>(1, all.size()); first += 16) {
-    std::uint32_t packed = 0;
-    for (std::size_t i = first; i < std::min(first + 16, all.size()); ++i) {
-      packed |= static_cast<std::uint32_t>(all[i]) << (2 * (i - first));
-    }
-    numbers += fmt::format("{}{}u", first == 0 ? "" : ", ", packed);
-  }
-  return fmt::format("const uint kExactness[{}] = uint[]({});\n", (std::max<std::size_t>(1, all.size()) + 15) / 16,
-                     numbers);
-}
+// Precedes the scene's functions. {0}: vectors of numbers, {1}: surfaces.
+constexpr std::string_view kHead = R"(const int kNumbers = {0}, kSurfaces = {1};
+#ifdef COPY_NUMBERS
+layout(std140) uniform scene_block {{ vec4 u_numbers[kNumbers]; }};
+vec4 scene_numbers[kNumbers];
+#else
+layout(std140) uniform scene_block {{ vec4 scene_numbers[kNumbers]; }};
+#endif
 
-std::string shader_of(const CompiledScene& scene, const compiler::Box& slice, std::size_t lights) {
-  const double step = std::isfinite(scene.lipschitz) ? 1 / std::max(scene.lipschitz, 1e-6) : kGuessedStep;
-  const dvec3 margin = kMargin * (slice.hi - slice.lo);
-  return compiler::emit_glsl(scene, "scene", true) +
-         fmt::format(
-             "\nconst int kSteps = {};\nconst int kSurfaces = {};\nconst int kLights = {};\n"
-             "const float kInverseLipschitz = {:e};\nconst vec3 kLo = {}, kHi = {};\n"
-             "const vec3 kSliceLo = {}, kSliceHi = {};\n",
-             kSteps, std::max<std::size_t>(1, scene.surfaces.size()), std::max<std::size_t>(1, lights), step,
-             vector_text(scene.bound.lo + scene.origin), vector_text(scene.bound.hi + scene.origin),
-             vector_text(slice.lo - margin), vector_text(slice.hi + margin)) +
-         exactness_text(scene) + std::string(kLiveShader);
+)";
+
+std::string shader_of(const CompiledScene& scene, const compiler::GlslTemplate& glsl) {
+  return fmt::format(fmt::runtime(kHead), glsl.numbers.size() / 4, std::max<std::size_t>(1, scene.surfaces.size())) +
+         glsl.text + '\n' + std::string(kLiveShader);
 }
 
 }  // namespace
@@ -237,21 +231,32 @@ json live_scene(const CompiledScene& scene) {
     surfaces.push_back(surface_of(scene, scene.surfaces[i], materials[i]));
   }
   const compiler::Box slice = slice_box(scene, camera);
-  json bound;
-  if (scene.bound.finite() && !scene.bound.empty()) {
-    bound = {list(scene.bound.lo + scene.origin), list(scene.bound.hi + scene.origin)};
-  }
+  const dvec3 margin = kMargin * (slice.hi - slice.lo);
+  const compiler::GlslTemplate glsl = compiler::emit_glsl_template(scene, "scene");
   return {{"summary", scene.summary},
           {"camera", camera_of(scene, camera)},
           {"bottom", list(bottom)},
           {"top", list(top)},
           {"lights", lights},
-          {"bound", bound},
+          {"box", {finite_list(scene.bound.lo + scene.origin), finite_list(scene.bound.hi + scene.origin)}},
           {"slice", {list(slice.lo), list(slice.hi)}},
+          {"sliceBox", {list(slice.lo - margin), list(slice.hi + margin)}},
           {"surfaces", surfaces},
           {"far", scene.settings.far.value_or(kFar * glm::length(camera.target - camera.position))},
+          {"inverseLipschitz",
+           std::isfinite(scene.lipschitz) ? 1 / std::max(scene.lipschitz, kLeastLipschitz) : kGuessedStep},
           {"exposure", std::exp2(scene.film.exposure)},
-          {"shader", shader_of(scene, slice, lights.size())}};
+          {"numbers", bits_of(glsl.numbers)},
+          {"shader", shader_of(scene, glsl)}};
+}
+
+json live_exactness(const CompiledScene& scene) {
+  const std::vector<compiler::Exactness> all = exactness_of_surfaces(scene);
+  std::vector<std::uint32_t> packed(std::max<std::size_t>(1, (all.size() + 15) / 16));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    packed[i / 16] |= static_cast<std::uint32_t>(all[i]) << (2 * (i % 16));
+  }
+  return packed;
 }
 
 }  // namespace fathom::runtime

@@ -8,8 +8,14 @@
 
 namespace fathom::runtime {
 
-// Returns an object: `shader` (GLSL without its version), camera, lights, surfaces, background, bound (null if it is
-// endless), `slice` (the box that a slice shows, always finite). Places are scene coordinates; light is linear sRGB.
+// Returns an object: `shader` (GLSL without its version) and `numbers` (the bits of its uniform block's floats),
+// camera, lights, surfaces, background, `box` (around the scene), `slice` (the box across which slices are chosen)
+// and `sliceBox` (in which they are shown), all finite. Scenes that differ only in numbers have the same shader.
+// Places are scene coordinates; light is linear sRGB.
 nlohmann::json live_scene(const compiler::CompiledScene& scene);
+
+// Returns the exactness of the surfaces' fields, 2 bits each, 16 in a number, the first ones lowest: exact, bound,
+// estimate. Takes about as long as compiling the scene.
+nlohmann::json live_exactness(const compiler::CompiledScene& scene);
 
 }  // namespace fathom::runtime

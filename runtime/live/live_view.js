@@ -8,7 +8,7 @@ const kOverlays = [
   ["Steps", "violet: few; green: more; yellow: many"],
   ["Exactness", "blue: exact distances; sand: lower bounds; red: estimates"],
 ];
-const kNormal = 2;
+const kNormal = 2, kExactness = 5;
 const kSamples = 16;         // per pixel of a camera at rest
 const kQuick = 25;           // milliseconds that a drawing should take, so that what comes next need not wait
 const kFewRows = 16;
@@ -40,6 +40,7 @@ class LiveView {
   #started = 0;
   #coarseSize = null;  // of the coarse picture that the graphics card is drawing
   #isNew = false;   // no frame of the scene has been finished
+  #isUntried = false;  // no frame of the program has been finished
   #probe = null;
   #onCamera = [];
   #onScene = [];
@@ -77,20 +78,26 @@ class LiveView {
     this.#scene = scene;
     if (!this.#camera || !this.#isMoved) this.#camera = new LiveCamera(scene.camera);
     if (!this.#gl) return this.#say("This browser has no WebGL2, which the live picture needs.");
+    if (this.#pending?.scene.shader === scene.shader) return;
     this.#pending?.delete();
     this.#pending = null;
-    if (this.#program?.scene.shader === scene.shader) return this.#adopt(this.#program);
+    if (this.#program?.scene.shader === scene.shader) {
+      this.#adopt(this.#program);
+      return this.#drawAhead();
+    }
     this.#pending = new LiveProgram(this.#gl, scene);
     this.#wake();
   }
 
   #adopt(program) {
-    if (program !== this.#program) this.#program?.delete();
+    if (program !== this.#program) {
+      this.#program?.delete();
+      this.#isUntried = true;
+      this.#rows = kFewRows;
+    }
     this.#program = program;
-    this.#gl.useProgram(program.program);
-    program.setScene(this.#scene);
+    program.use(this.#scene);
     this.#isNew = true;
-    this.#rows = kFewRows;
     this.#say(this.#scene.summary);
     this.#tellCamera();
     this.#settleSoon();
@@ -104,6 +111,15 @@ class LiveView {
     program.delete();
     const stays = this.#program ? "; the last scene stays" : "";
     this.#say(`The graphics driver refuses the scene's shader${stays}: ${error}`);
+  }
+
+  // Takes over the exactness of the surfaces of the scene given last, which the page may know later than the scene.
+  setExactness(exactness) {
+    if (!this.#scene) return;
+    this.#scene.exactness = exactness;
+    if (this.#program?.scene !== this.#scene) return;
+    this.#program.showExactness();
+    this.#redraw();
   }
 
   // False in a browser that cannot draw.
@@ -178,6 +194,11 @@ class LiveView {
     if (this.#pending || this.#fence || (this.#program && this.#next < kSamples)) this.#wake();
   }
 
+  // Draws at once instead of in the browser's next frame, unless the graphics card is busy.
+  #drawAhead() {
+    if (!this.#fence) this.#drawNext();
+  }
+
   #drawNext() {
     const gl = this.#gl;
     if (this.#moving) this.#drawCoarsely();
@@ -215,7 +236,8 @@ class LiveView {
     this.#coarseSize = null;
     if (coarse) {
       // Drivers finish a program when it first draws.
-      if (!this.#isNew) this.#coarse = Math.min(1, Math.max(kLeastCoarse, this.#coarse * Math.sqrt(pace(took))));
+      if (!this.#isUntried) this.#coarse = Math.min(1, Math.max(kLeastCoarse, this.#coarse * Math.sqrt(pace(took))));
+      this.#isUntried = false;
       return this.#show(...coarse);
     }
     this.#rows = Math.min(height, Math.max(kFewRows, Math.round(this.#rows * pace(took))));

@@ -4,10 +4,13 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/support/compiled.h"
+#include "tests/support/temporary_folder.h"
 
 namespace fathom::test::live_page_test {
 namespace {
@@ -49,7 +52,7 @@ TEST_CASE("a live page has the scene's functions, camera, materials and lights",
   const std::string shader = scene["shader"];
   CHECK(count(shader, "float scene_distance(vec3 p) {") == 1);
   CHECK(count(shader, "int scene_surface(vec3 p) {") == 1);
-  CHECK(count(shader, "const int kSurfaces = 2;") == 1);
+  CHECK(count(shader, "kSurfaces = 2;") == 1);
   CHECK(scene["exposure"] == 2);
   CHECK(scene["camera"]["position"] == json({0, 0, 5}));
   CHECK(scene["camera"]["half"][0].get<double>() == Approx(1));
@@ -63,26 +66,61 @@ TEST_CASE("a live page has the scene's functions, camera, materials and lights",
   CHECK(scene["lights"][0]["at"] == json({0, 1, 0, 0}));
   CHECK(scene["lights"][1]["at"] == json({0, 2, 0, 1}));
   CHECK(scene["lights"][1]["power"][0].get<double>() == Approx(4 * 3.14159265 * 0.01));
-  REQUIRE(scene["bound"].is_array());
-  CHECK(scene["bound"][1][0].get<double>() >= 1.5);
+  CHECK(scene["box"][1][0].get<double>() == Approx(1.5).margin(0.1));
 }
 
 TEST_CASE("a live page of an unbounded scene has no box, but a slice of its bounded parts", "[live]") {
   const json scene = scene_of(runtime::live_page(
       compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 2})")));
-  CHECK(scene["bound"].is_null());
   REQUIRE(scene["slice"].is_array());
   CHECK(scene["slice"][0][0].get<double>() == Approx(-2).margin(0.1));
   CHECK(scene["slice"][1][2].get<double>() == Approx(2).margin(0.1));
-  const std::string shader = scene["shader"];
-  CHECK(count(shader, "const vec3 kLo = vec3(-1.000000000e+20, -1.000000000e+20,") == 1);
+  CHECK(scene["box"][0][0] == -1e20);
 }
 
-// Sides of a live page's box without end, and of an empty scene, would be no numbers in GLSL.
-TEST_CASE("the shader of a live page has finite numbers only", "[live]") {
-  const std::string shader =
-      scene_of(runtime::live_page(compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]})")))["shader"];
-  for (const char* number : {"(inf", "(-inf", " inf,", " -inf,", "nan"}) CHECK(count(shader, number) == 0);
+// Sides of a live page's box without end, and of an empty scene, have no number in JSON.
+TEST_CASE("the values of a live page are finite", "[live]") {
+  const std::string apart = R"({"type": "intersection", "of": [{"type": "sphere", "radius": 1},
+                                {"type": "sphere", "radius": 1, "translate": [9, 0, 0]}]})";
+  for (const std::string& object : {std::string(R"({"type": "plane", "normal": [0, 1, 0]})"), apart}) {
+    const json scene = scene_of(runtime::live_page(compiled_objects(object)));
+    for (const char* box : {"box", "slice", "sliceBox"}) {
+      for (int side = 0; side < 2; ++side) {
+        for (int axis = 0; axis < 3; ++axis) CHECK(scene[box][side][axis].is_number());
+      }
+    }
+  }
+}
+
+// The page compiles nothing as long as the text stays.
+TEST_CASE("the shader of a live page depends on the scene's structure alone", "[live]") {
+  const auto page_of = [](const std::string& size) {
+    return scene_of(runtime::live_page(test::compiled(R"({"version": 1,
+      "materials": {"paint": {"type": "diffuse", "color": [0.5, 0.5, )" +
+                                                      size + R"(]}},
+      "objects": [{"type": "box", "half_size": [1, 1, )" +
+                                                      size + R"(], "rotate": [0, 30, 0], "material": "paint"}],
+      "camera": {"position": [0, 0, 5], "target": [0, )" +
+                                                      size + R"(, 0]}})")));
+  };
+  const json a = page_of("0.25"), b = page_of("0.125");
+  CHECK(a["shader"] == b["shader"]);
+  CHECK(a["numbers"] != b["numbers"]);
+}
+
+TEST_CASE("the shader of a live page is GLSL ES 3.00", "[live]") {
+  const test::TemporaryFolder folder;
+  const std::string shader = scene_of(runtime::live_page(test::compiled(kScene)))["shader"];
+  for (const char* defined : {"", "#define COPY_NUMBERS\n"}) {
+    std::ofstream(folder.path() / "live.frag") << "#version 300 es\n"
+                                               << defined << "precision highp float;\nprecision highp int;\n"
+                                               << shader;
+    const std::string command = "cd '" + folder.path().string() + "' && '" FATHOM_GLSLANG "' live.frag > log";
+    const int status = std::system(command.c_str());
+    std::string line;
+    for (std::ifstream log(folder.path() / "log"); std::getline(log, line);) UNSCOPED_INFO(line);
+    CHECK(status == 0);
+  }
 }
 
 TEST_CASE("a live page knows how far the distance to each surface can be trusted", "[live]") {
@@ -91,10 +129,9 @@ TEST_CASE("a live page knows how far the distance to each surface can be trusted
          {"name": "b", "type": "mandelbulb"},
          {"name": "c", "type": "intersection", "translate": [-9, 0, 0],
           "of": [{"type": "sphere", "radius": 1}, {"type": "box", "half_size": [0.8, 0.8, 0.8]}]})")));
-  const std::string shader = scene["shader"];
   CHECK(scene["surfaces"].size() == 3);
   // 2 bits each: exact 0, an estimate 2, a bound 1.
-  CHECK(count(shader, "const uint kExactness[1] = uint[](24u);") == 1);
+  CHECK(scene["exactness"] == json({24}));
 }
 
 TEST_CASE("a textured surface of a live page has the mean colour that the camera sees", "[live]") {
