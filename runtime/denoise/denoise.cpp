@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vm/program/check.h"
 #ifdef FATHOM_OIDN
@@ -20,7 +21,7 @@ std::size_t pixels_of(const DenoiseInput& input) {
 #ifdef FATHOM_OIDN
 
 // Open Image Denoise 1.4 to 2: radiance, albedo and normals in, radiance out, in memory of the library's device.
-std::vector<float> filter(const DenoiseInput& input, int threads) {
+std::vector<float> filter(const DenoiseInput& input, int threads, const std::function<bool()>&) {
   oidn::DeviceRef device = oidn::newDevice(oidn::DeviceType::CPU);
   device.set("numThreads", threads);
   device.commit();
@@ -76,8 +77,8 @@ NlMeansInput plane_by_plane(const DenoiseInput& input) {
   return planes;
 }
 
-std::vector<float> filter(const DenoiseInput& input, int threads) {
-  const std::array<Plane, 3> light = nl_means(plane_by_plane(input), threads);
+std::vector<float> filter(const DenoiseInput& input, int threads, const std::function<bool()>& is_cancelled) {
+  const std::array<Plane, 3> light = nl_means(plane_by_plane(input), threads, is_cancelled);
   std::vector<float> radiance(3 * pixels_of(input));
   for (std::size_t at = 0; at < radiance.size(); ++at)
     radiance[at] = light[at % 3][at / 3] * divisor(input.albedo[at]);
@@ -86,17 +87,19 @@ std::vector<float> filter(const DenoiseInput& input, int threads) {
 
 #endif
 
-}  // namespace
-
-std::vector<float> denoise(const DenoiseInput& input, int threads) {
+std::vector<float> checked_filter(const DenoiseInput& input, int threads, const std::function<bool()>& is_cancelled) {
   const std::size_t pixels = pixels_of(input);
   CHECK(input.first.size() == 3 * pixels && input.second.size() == 3 * pixels && input.albedo.size() == 3 * pixels &&
             input.normal.size() == 3 * pixels && input.depth.size() == pixels,
         "the denoiser's pictures differ in size");
-  return filter(input, threads);
+  return filter(input, threads, is_cancelled);
 }
 
-void denoise(Film& film, int threads) {
+}  // namespace
+
+std::vector<float> denoise(const DenoiseInput& input, int threads) { return checked_filter(input, threads, nullptr); }
+
+bool denoise(Film& film, int threads, const std::function<bool()>& is_cancelled) {
   CHECK(film.layers().first_hit && film.layers().halves, "the film lacks what the denoiser needs");
   std::vector<float> first, second, albedo, normal, depth;
   const auto append = [](std::vector<float>& to, glm::dvec3 value) {
@@ -114,7 +117,11 @@ void denoise(Film& film, int threads) {
       depth.push_back(static_cast<float>(pixel.depth));
     }
   }
-  film.set_denoised(denoise({film.width(), film.height(), first, second, albedo, normal, depth}, threads));
+  std::vector<float> radiance =
+      checked_filter({film.width(), film.height(), first, second, albedo, normal, depth}, threads, is_cancelled);
+  if (is_cancelled && is_cancelled()) return false;
+  film.set_denoised(std::move(radiance));
+  return true;
 }
 
 }  // namespace fathom::runtime

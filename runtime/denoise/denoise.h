@@ -8,6 +8,7 @@
 // Tested by: tests/runtime/denoise/denoise_test.cpp
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct DenoiseInput {
 std::vector<float> denoise(const DenoiseInput& input, int threads);
 
 // Gives the film denoised radiance (Film::set_denoised). The film must keep FilmLayers::first_hit and ::halves, with
-// at least two samples per pixel.
-void denoise(Film& film, int threads);
+// at least two samples per pixel. Returns false, with the film unchanged, soon after `is_cancelled` has returned
+// true; any thread calls it. Open Image Denoise cannot be cancelled.
+bool denoise(Film& film, int threads, const std::function<bool()>& is_cancelled = nullptr);
 
 }  // namespace fathom::runtime

@@ -98,7 +98,7 @@ NlMeansPlanes frame(const NlMeansInput& input) {
   return framing;
 }
 
-NlMeansFiltered filter(const NlMeansPlanes& framing, int threads) {
+NlMeansFiltered filter(const NlMeansPlanes& framing, int threads, const std::function<bool()>& is_cancelled) {
   NlMeansFiltered filtered;
   const std::size_t pixels = static_cast<std::size_t>(framing.width) * static_cast<std::size_t>(framing.height);
   for (auto& colors : filtered.colors) colors.fill(Plane(pixels));
@@ -107,6 +107,7 @@ NlMeansFiltered filter(const NlMeansPlanes& framing, int threads) {
   parallel_for(
       threads, static_cast<std::size_t>(tiles.count()), [] { return std::make_unique<TileBuffers>(); },
       [&](const std::unique_ptr<TileBuffers>& buffers, std::size_t i) {
+        if (is_cancelled && is_cancelled()) return;
         filter_tile(framing, tiles.at(static_cast<std::int64_t>(i)), *buffers, filtered);
       });
   return filtered;
@@ -131,9 +132,9 @@ std::array<Plane, kCandidates> choose(NlMeansFiltered& filtered, int width, int 
 
 }  // namespace
 
-std::array<Plane, 3> nl_means(const NlMeansInput& input, int threads) {
+std::array<Plane, 3> nl_means(const NlMeansInput& input, int threads, const std::function<bool()>& is_cancelled) {
   const NlMeansPlanes framing = frame(input);
-  NlMeansFiltered filtered = filter(framing, threads);
+  NlMeansFiltered filtered = filter(framing, threads, is_cancelled);
   const std::array<Plane, kCandidates> shares = choose(filtered, input.width, input.height);
   std::array<Plane, 3> result;
   for (std::size_t c = 0; c < 3; ++c) {

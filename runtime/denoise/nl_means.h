@@ -14,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "runtime/denoise/plane.h"
 
@@ -27,7 +28,8 @@ struct NlMeansInput {
   Plane valid;                                 // 1, or 0 for pixels whose colour is not used
 };
 
-// Returns the filtered image. A pixel without any similar valid pixel keeps the mean of its copies.
-std::array<Plane, 3> nl_means(const NlMeansInput& input, int threads);
+// Returns the filtered image. A pixel without any similar valid pixel keeps the mean of its copies. The image is
+// unspecified if `is_cancelled`, which may be empty, has returned true.
+std::array<Plane, 3> nl_means(const NlMeansInput& input, int threads, const std::function<bool()>& is_cancelled);
 
 }  // namespace fathom::runtime

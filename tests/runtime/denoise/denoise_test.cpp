@@ -266,7 +266,7 @@ TEST_CASE("denoise: pictures of a pixel, a row and a column", "[runtime]") {
   }
 }
 
-TEST_CASE("denoise: a film keeps all but its radiance", "[runtime]") {
+TEST_CASE("denoise: a film keeps all but its radiance, and all of it when cancelled", "[runtime]") {
   Film film(PixelRect{100, 50, 124, 66}, {.halves = true});
   const Noise noise = exponential(1);
   for (int y = 0; y < 16; ++y) {
@@ -282,7 +282,9 @@ TEST_CASE("denoise: a film keeps all but its radiance", "[runtime]") {
     }
   }
   Film result = film;
-  denoise(result, 2);
+  CHECK(!denoise(result, 2, [] { return true; }));
+  CHECK(!result.denoised());
+  REQUIRE(denoise(result, 2, [] { return false; }));
   REQUIRE(result.denoised());
   double before = 0, after = 0;
   for (int y = 0; y < 16; ++y) {
