@@ -9,14 +9,13 @@ from viewer import Page, Server, replace
 
 CHANGES = 20
 
-# Notes when the page first shows what, in milliseconds since 1970.
+# Notes when the page first shows a version of the scene, in milliseconds since 1970.
 WATCH = """
 window.latency = {live: {}, picture: {}};
 const watch = () => {
-  const {live, picture, version} = window.fathomView;
+  const {live, pictureVersion} = window.fathomView;
   if (live) window.latency.live[live.version] ??= performance.timeOrigin + live.time;
-  window.latency.picture[picture] ??= performance.timeOrigin + performance.now();
-  window.latency.version = version;
+  window.latency.picture[pictureVersion] ??= performance.timeOrigin + performance.now();
   requestAnimationFrame(watch);
 };
 watch();
@@ -55,16 +54,14 @@ def delays(driver, scene):
         page.run(WATCH)
         for i in range(CHANGES):
             time.sleep(1)
-            before = page.facts()
+            version = page.facts()["version"] + 1
             changed = value * (1 + 0.002 * (i + 1))
             saved = time.time() * 1000
             replace(scene, pattern, rf"\g<1>{changed:.6f}")
-            page.wait("the live picture", lambda: page.facts()["live"] > before["live"])
-            page.wait("the true picture", lambda: page.facts()["picture"] > before["picture"])
-            seen = page.run("return window.latency")
-            live.append(seen["live"][str(page.facts()["live"])] - saved)
-            true.append(min(when for number, when in seen["picture"].items()
-                            if int(number) > before["picture"] and when > saved) - saved)
+            for kind, list_of_kind in (("live", live), ("picture", true)):
+                shown = f"return window.latency.{kind}[{version}]"
+                page.wait(f"the {kind} of version {version}", lambda: page.run(shown))
+                list_of_kind.append(page.run(shown) - saved)
     finally:
         server.stop()
     return live, true

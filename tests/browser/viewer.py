@@ -122,7 +122,11 @@ class Page:
         ActionChains(self.driver, duration=30).move_to_element_with_offset(at, right, down).click().perform()
 
     def hover(self, selector):
-        ActionChains(self.driver, duration=30).move_to_element(self.element(selector)).perform()
+        """Moves the pointer to an element, and again if the element has moved away meanwhile."""
+        def is_there():
+            ActionChains(self.driver, duration=30).move_to_element(self.element(selector)).perform()
+            return self.run("return arguments[0].matches(':hover')", self.element(selector))
+        self.wait(f"the pointer over {selector}", is_there)
 
 
 def replace(path, pattern, replacement):

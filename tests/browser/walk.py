@@ -85,11 +85,14 @@ def changes_parameters(page, server):
     assert page.still() != live, "the picture stays"
     assert server.scene.read_text() == text, "the file has changed without being asked"
     value = float(page.run("return document.querySelector('#parameters input[type=number]').value"))
+    version = page.facts()["version"]
     page.element("#keep").click()
     page.wait("the value in the file", lambda: server.scene.read_text() != text)
     written = server.scene.read_text()
     assert f"= {value:g}\n" in written, f"{value:g} is not in: {written}"
     assert page.wait("the note", lambda: page.text("#parameters-note").startswith("written"))
+    # A new version clears masks of instructions.
+    page.wait("the file's new version", lambda: page.facts()["version"] > version)
 
 
 def asks_pixels(page, _server):

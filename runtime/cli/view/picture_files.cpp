@@ -65,16 +65,17 @@ Bytes PictureFiles::encode(const std::shared_ptr<const Picture>& picture, std::s
   const runtime::ToneMapping tone{std::clamp(film.exposure + exposure, -100.0, 100.0), film.tone};
   const bool is_wanted = denoise == Denoise::On || (denoise == Denoise::Auto && picture->samples < kFewSamples);
   if (*found == Layer::Beauty && is_wanted && picture->samples >= 2) {
-    return layer_file(*denoised(picture), *found, tone);
+    if (const auto clean = denoised(picture)) return layer_file(*clean, *found, tone);
   }
   return layer_file(picture->film, *found, tone);
 }
 
 std::shared_ptr<const runtime::Film> PictureFiles::denoised(const std::shared_ptr<const Picture>& picture) {
+  const int before = cancelled_;
   const std::lock_guard lock(mutex_);
   if (number_ != picture->number) {
     auto film = std::make_shared<runtime::Film>(picture->film);
-    runtime::denoise(*film, threads_);
+    if (!runtime::denoise(*film, threads_, [&] { return cancelled_ != before; })) return nullptr;
     denoised_ = std::move(film);
     number_ = picture->number;
   }

@@ -15,6 +15,7 @@
 
 #include "runtime/cli/view/viewed_scene.h"
 #include "runtime/film/film.h"
+#include "runtime/render.h"
 
 namespace fathom::cli {
 
@@ -63,12 +64,16 @@ class TruePicture {
   void set_view(PictureView view);
   PictureView view() const;
 
-  // Returns the newest state, or null before the first.
+  // Returns the newest state, or null before the first of this scene and view.
   std::shared_ptr<const Picture> latest() const;
 
  private:
+  class Round;
+
   void run();
-  void render(std::shared_ptr<const LoadedScene> scene, const PictureView& view);
+  void render(std::shared_ptr<const LoadedScene> scene, const PictureView& view,
+              std::shared_ptr<const std::atomic<bool>> cancel);
+  std::optional<runtime::RenderResult> in_background(std::function<runtime::RenderResult()> render);
   void publish(Picture picture);
 
   const int threads_;
@@ -80,7 +85,8 @@ class TruePicture {
   std::shared_ptr<const Picture> latest_;
   int number_ = 0;
   bool changed_ = false, over_ = false;
-  std::atomic<bool> cancel_ = false;
+  std::shared_ptr<std::atomic<bool>> cancel_ = std::make_shared<std::atomic<bool>>(false);  // of the render that runs
+  std::unique_ptr<Round> round_;                                                            // of the rendering thread
   std::thread thread_;
 };
 

@@ -170,7 +170,10 @@ void ViewSession::stop() {
 
 void ViewSession::on_scene() {
   const SceneState state = scene_.state();
-  if (state.good) picture_.set_scene(state.loaded);
+  if (state.good) {
+    picture_.set_scene(state.loaded);
+    files_.cancel();
+  }
   const std::lock_guard lock(mutex_);
   changed_.notify_all();
 }
@@ -204,9 +207,10 @@ Answer ViewSession::get(std::string_view name, const Query& query) {
   if (name == "pixel") return pixel_answer_at(query);
   if (name == "pixels") return pixels_answer(query);
   if (name == "listing") return listing_answer(query);
-  if (name == "program") {
+  if (name == "program" || name == "exactness") {
     const auto loaded = scene_.state().loaded;
     if (!loaded) return problem(503, "there is no scene without errors yet");
+    if (name == "exactness") return answer_of(runtime::live_exactness(loaded->scene()));
     return {.body = program_json(loaded->scene().surface, "surface", loaded->scene())};
   }
   return problem(404, "there is nothing here");
@@ -231,7 +235,7 @@ Answer ViewSession::scene_answer() const {
                  {"parameters", json::array()}};
   if (!state.loaded) return answer_of(answer);
   const compiler::CompiledScene& scene = state.loaded->scene();
-  answer["live"] = runtime::live_scene(scene);
+  answer["live"] = state.loaded->live;
   answer["parameters"] = parameters_json(*state.loaded);
   answer["exposure"] = scene.film.exposure;
   answer["spp"] = scene.settings.spp;
@@ -241,7 +245,7 @@ Answer ViewSession::scene_answer() const {
 
 Answer ViewSession::picture_answer(const Query& query) {
   const auto picture = picture_.latest();
-  if (!picture) return problem(503, "there is no picture yet");
+  if (!picture) return {.status = 204};  // an event announces it
   const std::string layer = query("layer");
   const double exposure = to_number(query("exposure")).value_or(0);
   const Bytes bytes = files_.encode(picture, layer.empty() ? "color" : layer, exposure, denoise_of(query("denoise")));
@@ -300,6 +304,7 @@ Answer ViewSession::set_camera(const std::string& body) {
                                     kMinSide, kMaxSide, kMaxPixels));
   }
   picture_.set_view(std::move(*view));
+  files_.cancel();
   return {.status = 204};
 }
 

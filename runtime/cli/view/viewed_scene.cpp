@@ -3,11 +3,13 @@
 #include <sstream>
 #include <utility>
 
+#include "runtime/live/live_scene.h"
+
 namespace fathom::cli {
 namespace {
 
 // Time between polls: a change counts after two, so that it shows within a tenth of a second.
-constexpr std::chrono::milliseconds kPoll{15};
+constexpr std::chrono::milliseconds kPoll{8};
 
 }  // namespace
 
@@ -88,9 +90,11 @@ void ViewedScene::read_into(SceneState& state, const RenderRequest& request, con
   if (std::holds_alternative<ExitCode>(prepared)) return;
   auto& picture = std::get<std::unique_ptr<PreparedRender>>(prepared);
   auto defaults = defaults_of(input, *picture, state.loaded.get());
+  // Made here, before the true picture occupies all processors.
+  nlohmann::json live = runtime::live_scene(picture->scene);
   state.good = true;
-  state.loaded = std::make_shared<const LoadedScene>(
-      LoadedScene{state.version, std::move(input), request.scene, std::move(picture), std::move(defaults)});
+  state.loaded = std::make_shared<const LoadedScene>(LoadedScene{
+      state.version, std::move(input), request.scene, std::move(picture), std::move(defaults), std::move(live)});
 }
 
 // Returns the parameters with the file's values. A scene whose values were replaced is compiled once more without

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,7 @@ struct LoadedScene {
   SceneArguments arguments;  // with the parameters' values
   std::unique_ptr<PreparedRender> picture;
   std::vector<compiler::Parameter> defaults;  // the parameters with the values that the file gives them
+  nlohmann::json live;                        // for the live picture (runtime/live/live_scene.h)
 
   const compiler::CompiledScene& scene() const { return picture->scene; }
 };

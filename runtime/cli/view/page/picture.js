@@ -30,6 +30,8 @@ let shownVersion = 0, version = 0;  // of the scene: that of the true picture, a
 const viewCallbacks = [], clickCallbacks = [];
 
 export const pictureNumber = () => shown;
+// The version of the scene that the true picture in the page shows.
+export const pictureVersion = () => shownVersion;
 // The number of the view that the server was asked for last.
 export const viewId = () => cameraId;
 // Calls back when the camera or the size has changed, so that facts about pixels are out of date.
@@ -94,7 +96,7 @@ const fetchPicture = latest(async () => {
   const wanted = event, exposure = byId("exposure").value;
   const response = await get("picture", {layer, exposure, denoise: byId("denoise").value});
   const blob = await response.blob();
-  if (wanted.camera !== cameraId) return;
+  if (blob.size === 0 || wanted.camera !== cameraId) return;  // out of date
   await swap(blob);
   shown = Number(response.headers.get("X-Picture")) || wanted.number;
   shownCamera = wanted.camera;
@@ -103,8 +105,14 @@ const fetchPicture = latest(async () => {
   showPictures();
 });
 
+// The server compiles the scene once more to know the exactness of its surfaces, so it is asked only when needed.
+const fetchExactness = latest(async () => {
+  if (view.overlay === kExactness) view.setExactness(await (await get("exactness")).json());
+});
+
 export function setSceneVersion(number) {
   version = number;
+  fetchExactness();
   showPictures();
 }
 
@@ -129,6 +137,7 @@ function connectBar() {
   overlay.addEventListener("change", () => {
     const choice = kChoices.find(([value]) => value === overlay.value);
     view.overlay = choice[2], layer = choice[3];
+    fetchExactness();
     byId("side-live").textContent = kOverlays[view.overlay][1] ? `live – ${kOverlays[view.overlay][1]}` : "live";
     fetchPicture();
   });

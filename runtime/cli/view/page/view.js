@@ -2,7 +2,7 @@
 "use strict";
 
 import {byId, element, get, latest} from "./server.js";
-import {askForView, onPixel, onView, pictureNumber, setSceneVersion, tellPicture, view, viewId} from "./picture.js";
+import {askForView, onPixel, onView, pictureNumber, pictureVersion, setSceneVersion, tellPicture, view, viewId} from "./picture.js";
 import {redrawMask} from "./mask.js";
 import {askPixel, onAnswer, onPixelLine, outdatePixel} from "./pixel.js";
 import {chooseLine, onProgramLine, setVersion, showProgram} from "./program.js";
@@ -26,17 +26,21 @@ function connection(state, text) {
 const loadScene = latest(async () => {
   const scene = await (await get("scene")).json();
   sceneVersion = scene.version;
+  const isNew = scene.live && (scene.good || goodVersion === 0);
+  // First, because everything else is quick in comparison.
+  if (isNew) {
+    versions.clear();
+    versions.set(scene.live, scene.version);
+    view.setScene(scene.live);
+  }
   document.title = `${scene.name} – Fathom`;
   byId("name").textContent = scene.name;
   byId("name").title = scene.path;
   showSource(scene);
   document.body.dataset.good = String(scene.good);
-  if (!scene.live || (!scene.good && goodVersion > 0)) return;
+  if (!isNew) return;
   goodVersion = scene.version;
-  versions.clear();
-  versions.set(scene.live, scene.version);
   showParameters(scene.parameters);
-  view.setScene(scene.live);
   setVersion(scene.version);
   setSceneVersion(scene.version);
   outdatePixel();
@@ -107,6 +111,7 @@ window.fathomView = {
   get version() { return sceneVersion; },
   get live() { return liveFrame; },
   get picture() { return pictureNumber(); },
+  get pictureVersion() { return pictureVersion(); },
   get camera() { return view.camera; },
   get connection() { return byId("connection").dataset.state; },
 };

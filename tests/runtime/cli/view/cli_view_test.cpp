@@ -47,7 +47,7 @@ void wait_until_done(const ViewClient& client) {
 TEST_CASE("view: the true picture has the bits of a render", "[cli][view]") {
   const Folder folder;
   ViewClient client(folder, "ball.json");
-  CHECK(client.get("picture").status == 503);
+  CHECK(client.get("picture").status == 204);
   CHECK(client.post("camera", kOwnCamera).status == 204);
   wait_until_done(client);
   REQUIRE(folder.run("render ball.json --uniform -o ball.png -a -n").code == 0);
