@@ -55,12 +55,16 @@ GlslTemplate emit_glsl_template(const CompiledScene& scene, const std::string& n
   language.prefix = name + '_';
   language.has_comments = false;
   language.immediate = [&](double value) {
+    if (is_structural(value)) return language.literal(value);
     const std::size_t i = result.numbers.size();
-    if (is_structural(value) || i == kMaxGlslNumbers) return language.literal(value);
     result.numbers.push_back(static_cast<float>(value));
     return fmt::format("{}_numbers[{}].{}", name, i / 4, "xyzw"[i % 4]);
   };
   result.text = print_functions(language, scene, true);
+  if (result.numbers.size() > kMaxGlslNumbers) {
+    language.immediate = language.literal;
+    result = {print_functions(language, scene, true), {}};
+  }
   result.numbers.resize((std::max<std::size_t>(1, result.numbers.size()) + 3) / 4 * 4);
   return result;
 }
