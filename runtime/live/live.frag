@@ -83,7 +83,8 @@ Ray ray_at(vec2 place) {
 float slice_distance(Ray ray) { return (u_slice_at - ray.o[u_slice_axis]) / ray.d[u_slice_axis]; }
 
 // Many compilers copy a function to each of its calls, so scene_distance is called from as few places as possible: in
-// trace(), look_around() and shadow().
+// trace(), look_around() and shadow(). A single call in a loop over these stages makes a frame ten times as slow in
+// SwiftShader, which computes all branches of a loop's body.
 
 // Returns the distance along the ray to the surface, or -1. `pixel`: width of a pixel at unit distance. Counts the
 // evaluations of the field. `side` becomes -1 if the ray begins inside a solid.

@@ -210,8 +210,9 @@ Answer ViewSession::get(std::string_view name, const Query& query) {
   if (name == "program" || name == "exactness") {
     const auto loaded = scene_.state().loaded;
     if (!loaded) return problem(503, "there is no scene without errors yet");
-    if (name == "exactness") return answer_of(runtime::live_exactness(loaded->scene()));
-    return {.body = program_json(loaded->scene().surface, "surface", loaded->scene())};
+    if (name == "program") return {.body = program_json(loaded->scene().surface, "surface", loaded->scene())};
+    const std::lock_guard lock(asking_);
+    return answer_of(runtime::live_exactness(loaded->scene()));
   }
   return problem(404, "there is nothing here");
 }

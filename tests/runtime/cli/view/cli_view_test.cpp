@@ -100,6 +100,7 @@ TEST_CASE("view: a pixel tells its object, its place and the way there", "[cli][
   CHECK(miss["hit"] == false);
   CHECK(client.get("pixel?x=99&y=0").status == 400);
   CHECK(client.get("pixel?x=nan&y=0").status == 400);
+  CHECK(client.json("exactness").size() == 1);
 
   // The ball's instructions matter on the ball and not on the floor.
   const json program = client.json("program");
