@@ -30,7 +30,8 @@ std::string emit_glsl(const CompiledScene& scene, const std::string& name, bool 
 struct GlslTemplate {
   // The functions of emit_glsl() with surfaces, without comments, which read an array `vec4 NAME_numbers[]`. Equal
   // for scenes whose programs differ only in immediates. The text itself has the corners of outlines; immediates of
-  // 0, 1 and infinity, so that a compiler simplifies what multiplies by them; and those beyond kMaxGlslNumbers.
+  // 0, 1 and infinity, so that a compiler simplifies what multiplies by them; and all immediates if there are more
+  // than kMaxGlslNumbers.
   std::string text;
   std::vector<float> numbers;  // of the array; a multiple of four, at least four
 };

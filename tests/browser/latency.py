@@ -58,10 +58,10 @@ def delays(driver, scene):
             changed = value * (1 + 0.002 * (i + 1))
             saved = time.time() * 1000
             replace(scene, pattern, rf"\g<1>{changed:.6f}")
-            for kind, list_of_kind in (("live", live), ("picture", true)):
+            for kind, times in (("live", live), ("picture", true)):
                 shown = f"return window.latency.{kind}[{version}]"
                 page.wait(f"the {kind} of version {version}", lambda: page.run(shown))
-                list_of_kind.append(page.run(shown) - saved)
+                times.append(page.run(shown) - saved)
     finally:
         server.stop()
     return live, true

@@ -69,7 +69,7 @@ TEST_CASE("a live page has the scene's functions, camera, materials and lights",
   CHECK(scene["box"][1][0].get<double>() == Approx(1.5).margin(0.1));
 }
 
-TEST_CASE("a live page of an unbounded scene has no box, but a slice of its bounded parts", "[live]") {
+TEST_CASE("a live page of an unbounded scene has a box without end, but a slice of its bounded parts", "[live]") {
   const json scene = scene_of(runtime::live_page(
       compiled_objects(R"({"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 2})")));
   REQUIRE(scene["slice"].is_array());

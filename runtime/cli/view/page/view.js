@@ -27,7 +27,7 @@ const loadScene = latest(async () => {
   const scene = await (await get("scene")).json();
   sceneVersion = scene.version;
   const isNew = scene.live && (scene.good || goodVersion === 0);
-  // First, because everything else is quick in comparison.
+  // First, because drawing takes longest.
   if (isNew) {
     versions.clear();
     versions.set(scene.live, scene.version);
