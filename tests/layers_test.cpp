@@ -61,6 +61,7 @@ const std::vector<std::string> kFolders = {
     "runtime",
     "runtime/chart",
     "runtime/live",
+    "runtime/load",
     "runtime/measure",
     "runtime/cli/options",
     "runtime/cli/dump",
@@ -73,11 +74,16 @@ const std::vector<std::string> kFolders = {
     "runtime/cli/view/page",
     "runtime/cli/view",
     "runtime/cli",
+    "bindings/include/fathom",
+    "bindings/cpp",
+    "bindings/c",
+    "bindings/python",
+    "bindings",
 };
 
 // Folders of runtime/ that are not the renderer's: they use any part of the compiler.
 bool is_client(const std::string& file) {
-  return file.starts_with("runtime/cli/") || file.starts_with("runtime/live/");
+  return file.starts_with("runtime/cli/") || file.starts_with("runtime/live/") || file.starts_with("runtime/load/");
 }
 
 // Max number of files in a folder, so that a reader still finds a file.
@@ -88,11 +94,11 @@ std::string folder_of(const std::string& path) { return path.substr(0, path.rfin
 // "vm/range/slope.h" and "vm/range/slope.cpp" are the unit "vm/range/slope".
 std::string unit_of(const std::string& path) { return path.substr(0, path.find('.')); }
 
-// The files of vm/, compiler/ and runtime/ and their quoted includes, as paths from the repository's root.
+// The files of vm/, compiler/, runtime/ and bindings/ and their quoted includes, as paths from the repository's root.
 const std::map<std::string, std::set<std::string>>& all_includes() {
   static const std::map<std::string, std::set<std::string>> result = [] {
     std::map<std::string, std::set<std::string>> files;
-    for (const char* top : {"vm", "compiler", "runtime"}) {
+    for (const char* top : {"vm", "compiler", "runtime", "bindings"}) {
       for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / top)) {
         if (!entry.is_regular_file()) continue;
         std::set<std::string>& includes = files[fs::relative(entry.path(), FATHOM_SOURCE_DIR).string()];
@@ -175,6 +181,16 @@ TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]
       CAPTURE(file, include);
       CHECK((!include.starts_with("compiler/") || include.starts_with("compiler/scene/") ||
              include == "compiler/geometry/box.h"));
+    }
+  }
+}
+
+TEST_CASE("the library does without the program", "[layers]") {
+  for (const auto& [file, includes] : all_includes()) {
+    if (!file.starts_with("bindings/")) continue;
+    for (const std::string& include : includes) {
+      CAPTURE(file, include);
+      CHECK_FALSE(include.starts_with("runtime/cli/"));
     }
   }
 }

@@ -62,8 +62,8 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::string text;
   if (compiler::is_text_scene(source.text())) {
-    const auto kept = compiler::read_with_formulas(source, ignored, scene_arguments.limits,
-                                                   import_reader(scene_arguments, streams));
+    const auto kept =
+        compiler::read_with_formulas(source, ignored, scene_arguments.limits, import_reader(scene_arguments));
     note_frozen(kept->frozen, source, streams);
     text = compiler::write_json(kept->file, compiler::comments_of_text(source, kept->file));
   } else {

@@ -7,9 +7,9 @@
 // Tested by: tests/runtime/cli/cli_test.cpp
 #include <fmt/format.h>
 
-#include <glm/common.hpp>
 #include <ostream>
 
+#include "compiler/geometry/outward.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/input/text_file.h"
 #include "runtime/cli/verbs.h"
@@ -123,17 +123,10 @@ void print_f32(const compiler::CompiledScene& scene, const std::vector<glm::dvec
   }
 }
 
-// Returns the box in the programs' coordinates, widened by more than the rounding error of its corners.
-PointBox local(const PointBox& box, glm::dvec3 origin) {
-  if (origin == glm::dvec3(0)) return box;
-  const glm::dvec3 lo = box.lo - origin, hi = box.hi - origin;
-  return {lo - 0x1p-52 * glm::abs(lo), hi + 0x1p-52 * glm::abs(hi)};
-}
-
 void print_ranges(const compiler::CompiledScene& scene, const std::vector<PointBox>& boxes, std::ostream& out) {
   vm::Workspace workspace;
   for (const PointBox& box : boxes) {
-    const auto [lo, hi] = local(box, scene.origin);
+    const auto [lo, hi] = compiler::moved_outward({box.lo, box.hi}, -scene.origin);
     const vm::Range range = vm::evaluate_range(scene.distance, lo, hi, workspace);
     out << fmt::format("{} {}\n", range.lo, range.hi);
   }

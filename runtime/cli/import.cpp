@@ -56,7 +56,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::optional<compiler::ReadScene> model =
-      compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments, streams));
+      compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments));
   const bool not_a_film =
       model && model->format != compiler::SceneFormat::Scene && model->format != compiler::SceneFormat::Text;
   if (!not_a_film && !compiled_file) {

@@ -8,6 +8,6 @@
 namespace fathom::cli {
 
 // Returns a reader for files below `--root`, by default the scene's folder. Links are resolved before the check.
-compiler::ImportReader import_reader(const SceneArguments& arguments, const Streams& streams);
+compiler::ImportReader import_reader(const SceneArguments& arguments);
 
 }  // namespace fathom::cli

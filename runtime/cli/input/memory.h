@@ -6,11 +6,11 @@
 
 #include "compiler/source/limits.h"
 #include "runtime/image/image_read.h"
+#include "runtime/load/files.h"
 
 namespace fathom::cli {
 
-// Returns the limit of memory in bytes, by default three quarters of the machine's memory.
-double allowed_memory(const compiler::Limits& limits);
+using runtime::allowed_memory;
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 

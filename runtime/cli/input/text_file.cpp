@@ -2,42 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <istream>
+#include "runtime/load/files.h"
 
 namespace fathom::cli {
-namespace {
-
-std::variant<std::string, ReadError> read_all(std::istream& in, const compiler::Limits& limits) {
-  std::string text;
-  char block[1 << 16];
-  while (in.read(block, sizeof block) || in.gcount() > 0) {
-    text.append(block, static_cast<std::size_t>(in.gcount()));
-    const auto size = static_cast<double>(text.size());
-    if (size > limits.file_size) {
-      return ReadError{fmt::format("it has more than {:.15g} bytes, as many as are read", limits.file_size),
-                       compiler::raise(&compiler::Limits::file_size, 2 * limits.file_size), kBadScene};
-    }
-  }
-  if (in.bad()) return ReadError{std::strerror(errno)};
-  return text;
-}
-
-}  // namespace
 
 std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
                                                const Streams& streams) {
-  if (path == "-") return read_all(streams.in, limits);
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    return ReadError{"it is a directory"};
+  auto text = path == "-" ? runtime::read_stream(streams.in, limits) : runtime::read_file(path, limits);
+  if (auto* fault = std::get_if<runtime::FileFault>(&text)) {
+    return ReadError{std::move(fault->reason), std::move(fault->remedy), fault->too_large ? kBadScene : kIo};
   }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return ReadError{std::strerror(errno)};
-  return read_all(file, limits);
+  return std::get<std::string>(std::move(text));
 }
 
 ExitCode fail(const Streams& streams, const std::string& path, const ReadError& read_error) {
