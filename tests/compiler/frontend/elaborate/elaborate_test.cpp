@@ -13,6 +13,7 @@
 #include "compiler/frontend/elaborate/placement.h"
 #include "compiler/frontend/records/records.h"
 #include "compiler/frontend/syntax/json.h"
+#include "compiler/shapes/node_table.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
 #include "tests/support/scaled_cases.h"
 
