@@ -1,0 +1,28 @@
+"""Builds the module with CMake from the source tree: pip install ./bindings/python
+
+Needs the packages of scripts/install-packages, and Debian's pybind11-dev and python3-dev.
+"""
+import pathlib
+import subprocess
+import sys
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class CMakeBuild(build_ext):
+    def build_extension(self, extension):
+        target = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve()
+        build = pathlib.Path(self.build_temp).resolve()
+        build.mkdir(parents=True, exist_ok=True)
+        options = ["-DCMAKE_BUILD_TYPE=Release", "-DFATHOM_PYTHON=ON", "-DFATHOM_TESTS=OFF", "-DFATHOM_BENCH=OFF",
+                   f"-DPython_EXECUTABLE={sys.executable}", f"-DCMAKE_INSTALL_PREFIX={target.parent}",
+                   "-DFATHOM_PYTHON_DIR=."]
+        subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", build, *options], check=True)
+        subprocess.run(["cmake", "--build", build, "--target", "fathom_python"], check=True)
+        subprocess.run(["cmake", "--install", build, "--component", "python", "--strip"], check=True)
+
+
+setup(ext_modules=[Extension("fathom", sources=[])], cmdclass={"build_ext": CMakeBuild})

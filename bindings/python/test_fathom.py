@@ -1,0 +1,153 @@
+"""Tests of the Python module, against an installed `fathom` program: python3 test_fathom.py"""
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import fathom
+import numpy as np
+
+BALL = 'fathom 1\nparam r = 1\nobject "ball" sphere(r)\n'
+ENDLESS = BALL + "background [1, 1, 1]\ncamera (position = [0, 0, 4], target = [0, 0, 0])\n"
+
+
+class Points(unittest.TestCase):
+    def setUp(self):
+        self.scene = fathom.compile(BALL)
+        self.points = np.random.default_rng(1).uniform(-2, 2, (1000, 3))
+
+    def test_distances_equal_those_of_the_program(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "ball.fathom")
+            path.write_text(BALL)
+            for number, kind in (("f64", np.float64), ("f32", np.float32)):
+                points = self.points.astype(kind)
+                lines = "\n".join(" ".join(repr(float(c)) for c in p) for p in points)
+                printed = subprocess.run(["fathom", "eval", path, "--points", "-", "--number", number], input=lines,
+                                         capture_output=True, text=True, check=True).stdout.split("\n")[:-1]
+                columns = np.array([[float(word) for word in line.split()[:4]] for line in printed]).astype(kind)
+                np.testing.assert_array_equal(self.scene.distance(points), columns[:, 0])
+                np.testing.assert_array_equal(self.scene.gradient(points), columns[:, 1:])
+
+    def test_layouts_give_equal_distances(self):
+        expected = self.scene.distance(self.points)
+        self.assertEqual(expected.dtype, np.float64)
+        np.testing.assert_array_equal(self.scene.distance(np.asfortranarray(self.points)), expected)
+        np.testing.assert_array_equal(self.scene.distance(self.points[::-1])[::-1], expected)
+        np.testing.assert_array_equal(self.scene.distance(self.points[::3]), expected[::3])
+        np.testing.assert_array_equal(self.scene.distance(self.points.reshape(10, 100, 3)), expected.reshape(10, 100))
+        swapped = np.moveaxis(self.points.reshape(10, 100, 3), 0, 1)
+        np.testing.assert_array_equal(self.scene.distance(swapped), expected.reshape(10, 100).T)
+        np.testing.assert_array_equal(self.scene.distance(self.points.tolist()), expected)
+        self.assertEqual(self.scene.distance([0, 0, 0]), -1)
+        self.assertEqual(self.scene.distance(np.zeros((0, 3))).shape, (0,))
+
+    def test_results_can_have_a_place(self):
+        out = np.empty(1000)
+        self.assertIs(self.scene.distance(self.points, out=out), out)
+        np.testing.assert_array_equal(out, self.scene.distance(self.points))
+        for bad in (np.empty(999), np.empty(1000, np.float32), np.empty(2000)[::2]):
+            with self.assertRaises(ValueError):
+                self.scene.distance(self.points, out=bad)
+        with self.assertRaisesRegex(ValueError, "x, y, z"):
+            self.scene.distance(np.zeros((3, 2)))
+
+    def test_ranges_contain_distances(self):
+        lo, hi = self.points, self.points + 0.1
+        bounds = self.scene.range(lo, hi)
+        middle = self.scene.distance((lo + hi) / 2)
+        self.assertTrue(np.all((bounds[:, 0] <= middle) & (middle <= bounds[:, 1])))
+
+    def test_rays_hit_the_ball(self):
+        hits = self.scene.march([[0, 0, 3], [0, 5, 3], [0, 0, 0]], [[0, 0, -2], [0, 0, -1], [1, 0, 0]])
+        self.assertEqual(hits.hit.tolist(), [True, False, True])
+        self.assertEqual(hits.inside.tolist(), [False, False, True])
+        np.testing.assert_allclose(hits.t, [2, math.inf, 1], atol=1e-6)
+        np.testing.assert_allclose(hits.position[0], [0, 0, 1], atol=1e-6)
+        np.testing.assert_allclose(hits.normal[0], [0, 0, 1], atol=1e-6)
+        self.assertFalse(self.scene.march([[0, 0, 3]], [[0, 0, -1]], t_max=1.5).hit[0])
+
+
+class Scenes(unittest.TestCase):
+    def test_errors_have_spans(self):
+        with self.assertRaises(fathom.SceneError) as caught:
+            fathom.compile('fathom 1\nobject "ä" spere(1)\n')
+        (error,) = caught.exception.diagnostics
+        self.assertEqual((error.severity, error.line, error.column), ("error", 2, 12))
+        self.assertEqual(error.span, (21, 26))
+        self.assertIn("sphere", str(caught.exception))
+        with self.assertRaises(OSError):
+            fathom.load("no such file")
+
+    def test_facts_of_a_scene(self):
+        scene = fathom.compile(BALL, {"r": 2})
+        self.assertEqual(scene.parameters, {"r": 2})
+        self.assertEqual(scene.objects, ["ball"])
+        self.assertEqual(scene.bounds, ((-2, -2, -2), (2, 2, 2)))
+        self.assertEqual((scene.lipschitz, scene.certified), (1, True))
+        self.assertEqual(scene.nearest([[3, 0, 0]]).tolist(), [0])
+
+    def test_threads_share_a_scene(self):
+        scene = fathom.compile(BALL)
+        points = np.random.default_rng(2).uniform(-2, 2, (100_000, 3)).astype(np.float32)
+        expected, results = scene.distance(points), []
+        threads = [threading.Thread(target=lambda: results.append(scene.distance(points))) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(results), 8)
+        for result in results:
+            np.testing.assert_array_equal(result, expected)
+
+
+class Renders(unittest.TestCase):
+    def test_layers_show_the_ball(self):
+        image = fathom.compile(ENDLESS).render(width=33, height=21, samples=4)
+        self.assertTrue(image.complete)
+        self.assertEqual(image.samples, 33 * 21 * 4)
+        for layer in (image.radiance, image.albedo, image.normal, image.position):
+            self.assertEqual((layer.shape, layer.dtype), ((21, 33, 3), np.float32))
+        self.assertEqual(image.display.dtype, np.uint8)
+        self.assertAlmostEqual(float(image.depth[10, 16]), 3, delta=0.05)
+        self.assertEqual((int(image.object[10, 16]), int(image.object[0, 0])), (0, fathom.NO_OBJECT))
+        np.testing.assert_allclose(image.radiance[0, 0], 1, atol=1e-6)
+
+    def test_another_thread_ends_a_render(self):
+        stop = threading.Event()
+        threading.Timer(0.2, stop.set).start()
+        seen = []
+
+        def progress(fraction):
+            seen.append(fraction)
+            return not stop.is_set()
+
+        image = fathom.compile(ENDLESS).render(width=64, height=64, samples=1 << 20, progress=progress)
+        self.assertFalse(image.complete)
+        self.assertGreater(image.samples, 0)
+        self.assertTrue(seen)
+
+    def test_exceptions_of_the_callback_pass(self):
+        def progress(fraction):
+            raise KeyError("mine")
+
+        with self.assertRaises(KeyError):
+            fathom.compile(ENDLESS).render(width=64, height=64, samples=1 << 20, progress=progress)
+
+    def test_wrong_options_are_named(self):
+        scene = fathom.compile(ENDLESS)
+        with self.assertRaisesRegex(ValueError, "samples"):
+            scene.render(samples=0)
+        with tempfile.TemporaryDirectory() as folder:
+            image = scene.render(width=4, height=4, samples=1)
+            image.save(pathlib.Path(folder, "ball.png"))
+            self.assertGreater(pathlib.Path(folder, "ball.png").stat().st_size, 50)
+            with self.assertRaises(ValueError):
+                image.save(pathlib.Path(folder, "ball.gif"))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main(verbosity=1))
