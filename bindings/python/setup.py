@@ -1,8 +1,12 @@
 """Builds the module with CMake from the source tree: pip install ./bindings/python
 
-Needs the packages of scripts/install-packages, and Debian's pybind11-dev and python3-dev.
+Needs the packages of scripts/install-packages, and Debian's pybind11-dev and python3-dev. CMAKE_ARGS may hold further
+options of CMake, e.g. -DFATHOM_ISAS=host.
 """
+import os
 import pathlib
+import shlex
+import shutil
 import subprocess
 import sys
 
@@ -15,11 +19,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 class CMakeBuild(build_ext):
     def build_extension(self, extension):
         target = pathlib.Path(self.get_ext_fullpath(extension.name)).resolve()
-        build = pathlib.Path(self.build_temp).resolve()
-        build.mkdir(parents=True, exist_ok=True)
+        build = ROOT / "build/python"
         options = ["-DCMAKE_BUILD_TYPE=Release", "-DFATHOM_PYTHON=ON", "-DFATHOM_TESTS=OFF", "-DFATHOM_BENCH=OFF",
                    f"-DPython_EXECUTABLE={sys.executable}", f"-DCMAKE_INSTALL_PREFIX={target.parent}",
-                   "-DFATHOM_PYTHON_DIR=."]
+                   "-DFATHOM_PYTHON_DIR=.", *shlex.split(os.environ.get("CMAKE_ARGS", ""))]
+        if shutil.which("ccache"):
+            options.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+            os.environ.setdefault("CCACHE_BASEDIR", str(ROOT))
         subprocess.run(["cmake", "-G", "Ninja", "-S", ROOT, "-B", build, *options], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "fathom_python"], check=True)
         subprocess.run(["cmake", "--install", build, "--component", "python", "--strip"], check=True)
