@@ -31,4 +31,4 @@ class CMakeBuild(build_ext):
         subprocess.run(["cmake", "--install", build, "--component", "python", "--strip"], check=True)
 
 
-setup(ext_modules=[Extension("fathom", sources=[])], cmdclass={"build_ext": CMakeBuild})
+setup(py_modules=[], ext_modules=[Extension("fathom", sources=[])], cmdclass={"build_ext": CMakeBuild})
