@@ -1,4 +1,4 @@
-// The C interface over the C++ interface. Tested by: tests/bindings/c_interface_test.c
+// The C interface over the C++ interface. Tested by: tests/bindings/c_interface_test.cpp
 #include <fathom/fathom.h>
 
 #include <algorithm>
