@@ -31,4 +31,9 @@ class CMakeBuild(build_ext):
         subprocess.run(["cmake", "--install", build, "--component", "python", "--strip"], check=True)
 
 
-setup(py_modules=[], ext_modules=[Extension("fathom", sources=[])], cmdclass={"build_ext": CMakeBuild})
+# Leaves nothing in the source tree.
+WHEEL = ROOT / "build/python-wheel"
+WHEEL.mkdir(parents=True, exist_ok=True)
+
+setup(options={"build": {"build_base": str(WHEEL)}, "egg_info": {"egg_base": str(WHEEL)}}, py_modules=[],
+      ext_modules=[Extension("fathom", sources=[])], cmdclass={"build_ext": CMakeBuild})
