@@ -5,5 +5,10 @@
 
 int main() {
   const auto supported = hwy::SupportedTargets();
-  std::fputs(supported & HWY_AVX3 ? "avx512" : supported & HWY_AVX2 ? "avx2" : supported & HWY_SSE4 ? "sse4" : "scalar", stdout);
+  std::fputs(supported & HWY_AVX3   ? "avx512"
+             : supported & HWY_AVX2 ? "avx2"
+             : supported & HWY_SSE4 ? "sse4"
+             : supported & HWY_NEON ? "neon"
+                                    : "scalar",
+             stdout);
 }

@@ -206,7 +206,7 @@ class ExrReader {
   // Decodes a chunk into the image. The chunk's first value is at (x, y) of the data window.
   bool decode(const exr_chunk_info_t& chunk, std::int64_t x, std::int64_t y) {
     if (x + chunk.width > width_of(data_) || y + chunk.height > height_of(data_)) return fail(kBadExr);
-    exr_decode_pipeline_t pipeline = EXR_DECODE_PIPELINE_INITIALIZER;
+    exr_decode_pipeline_t pipeline = {};
     bool decoded = good(exr_decoding_initialize(context_, kPart, &chunk, &pipeline));
     const std::size_t at = static_cast<std::size_t>(y * width_of(data_) + x);
     for (std::size_t c = 0; decoded && c < image_.channels.size(); ++c) {

@@ -88,11 +88,15 @@ class Marcher {
     report(rays.id[i], clipped == ClipResult::Past ? RayHit::Status::Miss : RayHit::Status::Invalid);
     return false;
   }
-  // Adds a RayHit, constructed in place from its fields, in order.
+  // Adds a RayHit, constructed in place from its fields, in order. clang before 16 copies it.
   template <class... Fields>
   void report(std::uint32_t id, RayHit::Status status, Fields... fields) {
     count(status);
+#ifdef __cpp_aggregate_paren_init
     ray_hits_.emplace_back(id, status, fields...);
+#else
+    ray_hits_.push_back(RayHit{id, status, fields...});
+#endif
     if (!resumed_.empty()) [[unlikely]]
       add_work(ray_hits_.back());
     counters_.instructions += ray_hits_.back().instructions;

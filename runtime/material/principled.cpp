@@ -259,7 +259,6 @@ Principled::Sample Principled::sample(float lobe, glm::vec2 u) const {
   while (which < kLobeCount && lobe >= lobe_probability_[static_cast<std::size_t>(which)]) {
     lobe -= lobe_probability_[static_cast<std::size_t>(which++)];
   }
-  const glm::vec3 up(0, 0, 1);
   switch (which) {
     case kNullTransmission:
       return {-wo_, glm::vec3(1), true, true, true};

@@ -99,7 +99,8 @@ struct Isa {
 };
 
 // Best first.
-constexpr Isa kIsas[] = {{"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"scalar", HWY_STATIC_TARGET}};
+constexpr Isa kIsas[] = {
+    {"avx512", HWY_AVX3}, {"avx2", HWY_AVX2}, {"sse4", HWY_SSE4}, {"neon", HWY_NEON}, {"scalar", HWY_STATIC_TARGET}};
 
 // Removes any override of Highway's targets. Returns the targets that this computer can run.
 std::int64_t supported_targets() {

@@ -101,8 +101,8 @@ struct AlongLine {
 AlongLine evaluate_along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
                          Workspace& workspace);
 
-// Name of the instruction set in use ("avx512", "avx2", "sse4", "scalar"), and the names of all that this computer
-// can run, best first. The environment variable FATHOM_ISA forces one.
+// Name of the instruction set in use ("avx512", "avx2", "sse4", "neon", "scalar"), and the names of all that this
+// computer can run, best first. The environment variable FATHOM_ISA forces one.
 std::string_view isa_name();
 std::vector<std::string_view> available_isas();
 
