@@ -1,6 +1,7 @@
 #include "runtime/field/region_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "vm/prune/def_use_graph.h"
@@ -78,8 +79,8 @@ std::optional<RegionPlan> plan_regions(const vm::Code& program, const compiler::
   for (int axis = 0; axis < 3; ++axis) {
     plan.lo[static_cast<std::size_t>(axis)] = static_cast<float>(middle[axis] - static_cast<double>(plan.size) / 2);
   }
-  const int levels =
-      kExtraLevels + static_cast<int>(std::ceil(std::log2(std::cbrt(static_cast<double>(plan.choices)))));
+  const int cubes = (static_cast<int>(std::bit_width(plan.choices - 1)) + 2) / 3;  // least n with 8^n >= choices
+  const int levels = kExtraLevels + cubes;
   plan.levels = std::min(levels, kMaxLevels) + room;
   plan.far = far_levels(contents, plan);
   if (!(plan.far.first > 0)) return std::nullopt;

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -23,6 +22,7 @@
 #include "runtime/live/live_files.h"
 #include "runtime/live/live_surfaces.h"
 #include "runtime/sampling/camera.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -128,7 +128,7 @@ std::vector<json> lights_of(const CompiledScene& scene) {
   for (const compiler::Light& light : scene.lights) {
     const bool directional = light.type == compiler::Light::Type::Directional;
     lights.push_back(light_of(directional ? -light.direction : light.position + scene.origin, !directional,
-                              light.intensity, directional ? std::tan(glm::radians(light.angle)) : 0));
+                              light.intensity, directional ? vm::real::tan(light.angle * vm::real::kDegree) : 0));
   }
   const compiler::Background::Sky& sky = scene.background.sky;
   if (scene.background.type == compiler::Background::Type::Sky && sky.sun_disc) {
@@ -157,7 +157,7 @@ std::pair<dvec3, dvec3> means_of(const compiler::Background::Image& background) 
   for (int y = 0; y < image->height; ++y) {
     const std::size_t half = 2 * y < image->height ? 1 : 0;
     // Rows near the poles show less of the sphere.
-    const double weight = std::sin(std::numbers::pi * (y + 0.5) / image->height);
+    const double weight = vm::real::sin(std::numbers::pi * (y + 0.5) / image->height);
     for (int x = 0; x < image->width; ++x) {
       const auto at =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(image->width) + static_cast<std::size_t>(x);
@@ -245,7 +245,7 @@ json live_scene(const CompiledScene& scene) {
           {"far", scene.settings.far.value_or(kFar * glm::length(camera.target - camera.position))},
           {"inverseLipschitz",
            std::isfinite(scene.lipschitz) ? 1 / std::max(scene.lipschitz, kLeastLipschitz) : kGuessedStep},
-          {"exposure", std::exp2(scene.film.exposure)},
+          {"exposure", vm::real::exp(scene.film.exposure * std::numbers::ln2)},
           {"numbers", bits_of(glsl.numbers)},
           {"shader", shader_of(scene, glsl)}};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace fathom::runtime {
 namespace {
@@ -55,8 +56,9 @@ class DistanceShader {
       const double change = std::abs(value(i, j) - here);
       return std::isfinite(change) ? change : 0.0;
     };
-    return std::hypot(std::max(difference(x - 1, y), difference(x + 1, y)),
-                      std::max(difference(x, y - 1), difference(x, y + 1)));
+    // Not std::hypot, which is not the same on every processor.
+    return glm::length(glm::dvec2(std::max(difference(x - 1, y), difference(x + 1, y)),
+                                  std::max(difference(x, y - 1), difference(x, y + 1))));
   }
 
   // Returns the share of a pixel that a line covers. `away`: from the line's middle to the pixel's, in units of the

@@ -174,9 +174,9 @@ inline Slope operator+(const Slope& a, const Slope& b) {
   r.squares.known = a.squares.known && b.squares.known;
   if (r.squares.known) {
     for (std::size_t i = 0; i < 6; ++i) r.squares.g[i] = a.squares.g[i] + b.squares.g[i];
-    r.squares.steepest = bound(std::hypot(a.squares.steepest, b.squares.steepest));
-    // The roots of a and b are the lengths of two parts of F, so their errors add up like lengths: by hypot.
-    r.squares.root_error = bound(std::hypot(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
+    r.squares.steepest = bound(length_of(a.squares.steepest, b.squares.steepest));
+    // The roots of a and b are the lengths of two parts of F, so their errors add up like lengths.
+    r.squares.root_error = bound(length_of(a.squares.root_error, b.squares.root_error) + magnitude(sqrt(sum)));
   }
   r.logarithm = combined(a, b, log_sum);
   if (one_breaks(a, b)) {

@@ -12,6 +12,7 @@
 
 #include "runtime/film/adaptive.h"
 #include "runtime/sampling/camera.h"
+#include "vm/number/real.h"
 
 namespace fathom::cli {
 namespace {
@@ -133,7 +134,7 @@ compiler::Camera view_camera(const compiler::CompiledScene& scene, const std::op
     half = std::max(own.x, own.y * width / height);
   }
   camera.width = 2 * half;
-  camera.fov = 2 * std::atan(half);
+  camera.fov = 2 * vm::real::atan(half);
   camera.vertical_fov.reset();
   camera.focal_length.reset();
   return camera;
