@@ -6,6 +6,7 @@
 
 #include "runtime/march/march.h"
 #include "runtime/sampling/camera.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -21,7 +22,9 @@ class Random {
   // Returns a direction that is uniform over the sphere.
   dvec3 direction() {
     while (true) {
-      const dvec3 v(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      dvec3 v;
+      // Separate statements, because compilers evaluate arguments in different orders.
+      for (const int axis : {2, 1, 0}) v[axis] = uniform(-1, 1);
       const double squared = glm::dot(v, v);
       if (squared > 1e-4 && squared <= 1) return v / std::sqrt(squared);
     }
@@ -63,7 +66,7 @@ Ray bounce(const Place& place, double above, Random& random) {
 
 Ray graze(const Place& place, double extent, Random& random) {
   const dvec3 along = glm::normalize(glm::cross(place.normal, random.direction()));
-  const double variant = random.uniform(0.2, 1) * extent, gap = std::pow(10, random.uniform(-6, -2)) * extent;
+  const double variant = random.uniform(0.2, 1) * extent, gap = vm::real::pow(10, random.uniform(-6, -2)) * extent;
   const dvec3 beside = (random.uniform(0, 1) < 0.5 ? gap : -gap) * place.normal;
   return {to_float(place.position + beside - variant * along), to_float(along)};
 }
@@ -78,7 +81,8 @@ std::vector<RaySet> make_ray_sets(const compiler::CompiledScene& scene, const Fi
   const Camera camera(scene.camera, scene.film.width, scene.film.height);
   RaySet seen{"camera", {}}, bounced{"bounce", {}}, grazing{"grazing", {}};
   for (std::size_t i = 0; i < count; ++i) {
-    const CameraRay ray = camera.ray(random.uniform(0, scene.film.width), random.uniform(0, scene.film.height));
+    const double y = random.uniform(0, scene.film.height), x = random.uniform(0, scene.film.width);
+    const CameraRay ray = camera.ray(x, y);
     seen.rays.push_back({to_float(ray.origin), to_float(ray.direction)});
   }
   const std::vector<Place> places = places_of(scene, field, seen.rays);

@@ -40,7 +40,9 @@ class Maker {
 
   NodeId primitive() {
     if (options_.formulas && random_.chance(0.1)) {
-      const dvec3 half(random_.length(0.3, 2), random_.length(0.3, 2), random_.length(0.3, 2));
+      // One declarator after the other, because compilers evaluate arguments in different orders.
+      const double z = random_.length(0.3, 2), y = random_.length(0.3, 2), x = random_.length(0.3, 2);
+      const dvec3 half(x, y, z);
       return compiler::make_bounded(maker_, random_formula(maker_, random_), {-half, half}, {});
     }
     if (options_.outlines && random_.chance(0.2)) return of_outline();
@@ -64,7 +66,8 @@ class Maker {
     if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {outline(depth - 1)});
     if (choice == 2) {
       const double scale = random_.length(0.5, 2), angle = random_.uniform(-4, 4);
-      const dvec3 move(random_.uniform(-1, 1), random_.uniform(-1, 1), 0);
+      const double y = random_.uniform(-1, 1), x = random_.uniform(-1, 1);
+      const dvec3 move(x, y, 0);
       return add(Kind::Transform, transform_params(dvec3(scale), {0, 0, 1}, angle, move), {outline(depth - 1)});
     }
     if (choice <= 4) {
