@@ -50,11 +50,7 @@ runtime::Provenance provenance_of(const ChartRequest& request) {
   runtime::Provenance provenance;
   provenance.commit = fmt::format("fathom {} {}", kVersion, kCommit.empty() ? "(no commit)" : kCommit);
   provenance.cpu = processor();
-#ifdef __clang__
-  provenance.compiler = "clang " __clang_version__;
-#else
-  provenance.compiler = "g++ " __VERSION__;
-#endif
+  provenance.compiler = kCompiler;
   provenance.isa = vm::isa_name();
   provenance.date = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   provenance.command = request.command;

@@ -17,6 +17,7 @@
 #include "runtime/cli/options/help_text.h"
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
+#include "vm/interpret/evaluate.h"
 
 namespace fathom::cli {
 namespace {
@@ -34,14 +35,15 @@ std::string overview(int columns) {
   for (const Verb& verb : kVerbs) add(usage_of(verb), verb.summary);
   add("fathom help VERB", "prints the options of a verb");
   add("fathom help limits", "prints the limits on what a file may ask for");
-  add("fathom -V, --version", "prints the version and the commit");
+  add("fathom -V, --version", "prints the version, the commit and the instruction set in use");
   text += "\nExit status:\n";
   for (const ExitCodeInfo& row : kExitCodes) text += hanging(std::to_string(int{row.code}), row.meaning, 6, columns);
   return text;
 }
 
 std::string version() {
-  return fmt::format("fathom {}{}\n", kVersion, kCommit.empty() ? "" : fmt::format(" ({})", kCommit));
+  return fmt::format("fathom {}{}\ninstruction set {}, compiled by {}\n", kVersion,
+                     kCommit.empty() ? "" : fmt::format(" ({})", kCommit), vm::isa_name(), kCompiler);
 }
 
 // Returns the table of `fathom help limits`.

@@ -95,7 +95,7 @@ std::string manual() {
   text += ".SH ENVIRONMENT\n";
   text += tagged("\\fBCOLUMNS\\fR", "The width that help is wrapped to, in place of the terminal's.");
   text += tagged("\\fBNO_COLOR\\fR", "When set, messages have no colours.");
-  text += tagged("\\fBFATHOM_ISA\\fR", "Forces an instruction set: avx512, avx2, sse4 or scalar.");
+  text += tagged("\\fBFATHOM_ISA\\fR", "Forces an instruction set: avx512, avx2, sse4, neon or scalar.");
   return text;
 }
 

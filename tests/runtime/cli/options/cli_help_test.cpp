@@ -73,12 +73,14 @@ TEST_CASE("cli: an example that is too wide becomes lines that a shell joins") {
              Contains("  # and out-albedo.png, ...\n  fathom render scene.json -o \\\n      out.png -a -d -n\n"));
 }
 
-TEST_CASE("cli: -V and --version print version and commit") {
+TEST_CASE("cli: -V and --version print version, commit and instruction set") {
   const Folder folder;
   const Result result = folder.run("-V");
   CHECK(result.code == 0);
   CHECK(result.out.starts_with("fathom "));
   CHECK(folder.run("--version").out == result.out);
+  CHECK_THAT(folder.run_script("FATHOM_ISA=scalar $fathom -V").out,
+             Contains("\ninstruction set scalar, compiled by "));
 }
 
 }  // namespace fathom::cli_help_test
