@@ -58,6 +58,7 @@ const std::vector<std::string> kFolders = {
     "runtime/light",
     "runtime/path",
     "runtime/slice",
+    "runtime/mesh",
     "runtime",
     "runtime/chart",
     "runtime/live",

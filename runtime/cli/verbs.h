@@ -22,6 +22,7 @@ int run_compile(std::span<const std::string> args, const Streams& streams);
 int run_asm(std::span<const std::string> args, const Streams& streams);
 int run_eval(std::span<const std::string> args, const Streams& streams);
 int run_slice(std::span<const std::string> args, const Streams& streams);
+int run_mesh(std::span<const std::string> args, const Streams& streams);
 int run_tonemap(std::span<const std::string> args, const Streams& streams);
 int run_plan(std::span<const std::string> args, const Streams& streams);
 int run_merge(std::span<const std::string> args, const Streams& streams);
@@ -51,6 +52,7 @@ inline constexpr std::array kVerbs = {
     Verb{"asm", "listing.txt -o scene.fbc", "assembles a listing to a compiled scene", run_asm},
     Verb{"eval", "scene.json --at 0,1,0", "prints distances and gradients at points", run_eval},
     Verb{"slice", "scene.json -o out.png", "draws the field on a plane", run_slice},
+    Verb{"mesh", "scene.json -o part.stl", "writes the scene as a closed triangle mesh", run_mesh},
     Verb{"tonemap", "in.exr -o out.png", "converts a render's numbers to a picture", run_tonemap},
     Verb{"plan", "scene.json -o plan.json", "cuts a render into units for many machines", run_plan},
     Verb{"merge", "a.film b.film -o out.png", "adds up renders of parts of a picture", run_merge},

@@ -1,0 +1,243 @@
+// fathom mesh: writes the scene as a closed triangle mesh, each point of which is proved to lie near the surface.
+//
+//     $ fathom mesh part.fathom -o part.3mf --tolerance 0.05 --unit mm
+//     wrote part.3mf: 2348 triangles, 1176 vertices, 1 component, 40 x 25 x 10 mm
+//     every point of the mesh is within 0.0375 of the surface (proved)
+//
+// Tested by: tests/runtime/cli/cli_mesh_test.cpp
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "runtime/base/atomic_file.h"
+#include "runtime/cli/input/memory.h"
+#include "runtime/cli/input/scene_file.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/mesh/make_mesh.h"
+#include "runtime/mesh/mesh_file.h"
+#include "vm/encoding/escape.h"
+
+namespace fathom::cli {
+namespace {
+
+constexpr const char* kMeshExamples =
+    "fathom mesh part.fathom -o part.3mf --unit mm                # for a printer\n"
+    "fathom mesh part.fathom -o part.glb --tolerance 0.002\n"
+    "fathom mesh scene.json -o scene.ply --box -2,0,-2,2,3,2      # a part of a scene without end\n"
+    "\n"
+    "The tolerance is the max distance of the mesh from the surface. Parts of the scene that are thinner than the\n"
+    "tolerance may be lost, and are then named.";
+
+// Cells along the longest side, unless --tolerance or --resolution says otherwise.
+constexpr double kDefaultResolution = 256;
+constexpr double kMostResolution = 1 << 18;
+
+struct MeshRequest {
+  SceneArguments scene;
+  std::string output;
+  const runtime::MeshFormatInfo* format = nullptr;
+  std::optional<double> tolerance;
+  std::optional<int> resolution;
+  std::optional<PointBox> box;
+  int unit = -1;  // index into kLengthUnits; -1: not given
+  int up = 0;     // 0: y, 1: z
+  bool plain = false;
+  std::optional<int> threads;
+};
+
+std::string mesh_endings() {
+  std::string endings;
+  for (const auto& format : runtime::kMeshFormats) endings += fmt::format("{}.{}", endings.empty() ? "" : ", ", format.ending);
+  return endings;
+}
+
+OptionResult read_mesh_output(std::string_view text, MeshRequest& request) {
+  request.output = text;
+  request.format = runtime::mesh_format_of(text);
+  if (request.format) return std::nullopt;
+  return OptionError{fmt::format("`{}` does not end in a mesh format's name", text), "valid endings: " + mesh_endings()};
+}
+
+std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MeshRequest& request) {
+  std::vector<std::string_view> units;
+  for (const auto& unit : runtime::kLengthUnits) units.push_back(unit.name);
+  Arguments arguments("mesh", "Writes the scene as a closed triangle mesh.", kMeshExamples);
+  add_scene_arguments(arguments, request.scene);
+  arguments.option("-o,--output", "FILE", "Mesh to write: " + mesh_endings(),
+                   [&](std::string_view text) { return read_mesh_output(text, request); });
+  arguments.option("--tolerance", "D", "Max distance of the mesh from the surface, in scene units (as --resolution 256)",
+                   into(read_positive, request.tolerance));
+  arguments.option("--resolution", "N", "Cells along the longest side, instead of --tolerance",
+                   whole(request.resolution, 4, static_cast<int>(kMostResolution)));
+  arguments.option("--box", "X0,...,Z1", "Box, from x0,y0,z0 to x1,y1,z1, at which the solid is cut off",
+                   into(read_box, request.box));
+  arguments.option("--unit", "UNIT", "Length of a scene unit: mm, cm, m or in (3mf: mm, glb: m; others have no unit)",
+                   one_of(units, request.unit));
+  arguments.option("--up", "AXIS", "Axis of the file that points up: y (default), as in the scene, or z",
+                   one_of({"y", "z"}, request.up));
+  arguments.flag("--no-simplify", "Keep the triangles of all cells", request.plain);
+  arguments.option("--threads", "N", "Number of threads (one per processor); never changes the mesh",
+                   whole(request.threads, 1, 4096));
+  if (const auto code = arguments.parse(args, streams)) return code;
+  if (request.tolerance && request.resolution) {
+    return fail(streams, kUsage, "--tolerance and --resolution both say how fine the mesh is", {"give one of the two"});
+  }
+  if (request.format) return std::nullopt;
+  const std::string stem = request.scene.path == "-" ? "" : std::filesystem::path(request.scene.path).stem().string();
+  read_mesh_output((stem.empty() ? "out" : stem) + ".stl", request);
+  note(streams, fmt::format("the mesh goes to {}; -o FILE chooses another name", request.output));
+  return std::nullopt;
+}
+
+// Formats a place of the scene.
+std::string place_text(glm::dvec3 p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z); }
+std::string box_text(const compiler::Box& b) {
+  return fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
+}
+
+// The box of the mesh in the programs' coordinates.
+struct MeshBox {
+  compiler::Box box;
+  bool is_clipped;
+};
+
+std::variant<MeshBox, ExitCode> choose_box(const MeshRequest& request, const compiler::CompiledScene& scene,
+                                           const Streams& streams) {
+  MeshBox chosen{scene.bound, false};
+  if (request.box) {
+    const compiler::Box wanted{request.box->lo - scene.origin, request.box->hi - scene.origin};
+    chosen.box = intersect(wanted, scene.bound);
+    const compiler::Box outside = unite(wanted, scene.bound);
+    chosen.is_clipped = outside.lo != wanted.lo || outside.hi != wanted.hi;
+  }
+  const glm::dvec3 size = chosen.box.hi - chosen.box.lo;
+  if (chosen.box.empty() || (chosen.box.finite() && !(std::min({size.x, size.y, size.z}) > 0))) {
+    return fail_about(request.scene, kBadScene, request.box ? "nothing of the scene is in the box" : "the scene is empty",
+                      {}, streams);
+  }
+  if (chosen.box.finite()) return chosen;
+  Help help = {"--box X0,Y0,Z0,X1,Y1,Z1 cuts the scene off at a box"};
+  const compiler::Box contents = scene.contents.moved(scene.origin);
+  if (!contents.empty() && contents.finite()) help.push_back("its bounded parts are in --box " + box_text(contents));
+  return fail_about(request.scene, kBadScene, "the scene has no end, and a mesh has", help, streams);
+}
+
+ExitCode fail_to_mesh(const MeshRequest& request, const runtime::MeshResult& result, double memory,
+                      const Streams& streams) {
+  using End = runtime::MeshResult::End;
+  if (result.end == End::TooFine) {
+    return fail_about(request.scene, kUsage, "cells of this size are too small for single precision",
+                      {"give a larger --tolerance or a smaller --resolution"}, streams);
+  }
+  if (result.end == End::TooMany) {
+    return fail_about(request.scene, kUsage,
+                      fmt::format("the mesh needs about {} of memory, and {} are allowed", format_bytes(result.memory),
+                                  format_bytes(memory)),
+                      {"give a larger --tolerance or a smaller --resolution",
+                       compiler::raise(&compiler::Limits::memory, result.memory)},
+                      streams);
+  }
+  return fail_about(request.scene, kBadScene, "no part of the scene is as thick as the cells: the mesh is empty",
+                    {"give a smaller --tolerance or a larger --resolution"}, streams);
+}
+
+void warn_of_lost_parts(const compiler::CompiledScene& scene, const runtime::MeshResult& result, const Streams& streams) {
+  for (const runtime::LostPart& part : result.lost) {
+    const bool named = part.surface < scene.surfaces.size() && !scene.surfaces[part.surface].name.empty();
+    const std::string name = named ? fmt::format("`{}`", scene.surfaces[part.surface].name) : "the scene";
+    const std::string place = place_text(part.place + scene.origin);
+    warn(streams, fmt::format("{} {}, {:.2g} thin at {}: {} cells lose it; --tolerance {:.2g} keeps it",
+                              part.is_gap ? "a gap of" : "a part of", name, part.thickness, place, part.cells,
+                              part.thickness));
+  }
+}
+
+// Returns the mesh in the coordinates of the file.
+runtime::MeshDocument make_document(const MeshRequest& request, const compiler::CompiledScene& scene,
+                                    runtime::TriangleMesh mesh) {
+  runtime::MeshDocument document;
+  document.materials = runtime::mesh_materials(scene, mesh, document.material_of);
+  document.mesh = std::move(mesh);
+  for (glm::dvec3& v : document.mesh.vertices) {
+    v += scene.origin;
+    if (request.up == 1) v = {v.x, -v.z, v.y};
+  }
+  document.name = std::filesystem::path(request.output).stem().string();
+  if (request.unit >= 0) document.unit = &runtime::kLengthUnits[static_cast<std::size_t>(request.unit)];
+  return document;
+}
+
+std::optional<std::string> write_document(const MeshRequest& request, const runtime::MeshDocument& document) {
+  using runtime::MeshFormat;
+  switch (request.format->format) {
+    case MeshFormat::Stl: return runtime::write_file(encode_stl(document), request.output);
+    case MeshFormat::Ply: return runtime::write_file(encode_ply(document), request.output);
+    case MeshFormat::Glb: return runtime::write_file(encode_glb(document), request.output);
+    case MeshFormat::ThreeMf: {
+      const auto bytes = encode_3mf(document);
+      return bytes ? runtime::write_file(*bytes, request.output) : fmt::format("cannot pack `{}`", request.output);
+    }
+    case MeshFormat::Obj: break;
+  }
+  const std::filesystem::path materials = std::filesystem::path(request.output).replace_extension(".mtl");
+  if (auto problem = runtime::write_file(encode_mtl(document), materials.string())) return problem;
+  return runtime::write_file(encode_obj(document, materials.filename().string()), request.output);
+}
+
+void summarise(const MeshRequest& request, const compiler::CompiledScene& scene, const runtime::MeshResult& result,
+               const runtime::MeshDocument& document, double seconds, const Streams& streams) {
+  compiler::Box box;
+  for (const glm::dvec3& v : document.mesh.vertices) box = unite(box, {v, v});
+  const glm::dvec3 size = box.hi - box.lo;
+  const std::size_t components = runtime::measure(document.mesh).components;
+  say(streams, fmt::format("wrote {}: {} triangles, {} vertices, {}, {:.4g} x {:.4g} x {:.4g}{}{}", request.output,
+                           document.mesh.triangles.size(), document.mesh.vertices.size(),
+                           count_of(components, "component"), size.x, size.y, size.z, document.unit ? " " : "",
+                           document.unit ? document.unit->name : ""));
+  // Files hold floats, whose rounding counts, too.
+  const double rounding = 0x1p-23 * std::max(compiler::largest_part(box.lo), compiler::largest_part(box.hi));
+  constexpr double kUp = 1.0005;  // so that four digits are not below the bound
+  say(streams, fmt::format("every point of the mesh is within {:.4g} of the surface ({})", kUp * (result.bound + rounding),
+                           scene.certified ? "proved" : "estimated: the float error of the scene is"));
+  say(streams, fmt::format("{} cells of {:.4g}, {} triangles before simplification, {:.2f} s", result.cells, result.cell,
+                           result.contour_triangles, seconds));
+}
+
+}  // namespace
+
+int run_mesh(std::span<const std::string> args, const Streams& streams) {
+  MeshRequest request;
+  if (const auto code = parse(args, streams, request)) return *code;
+  if (const auto code = check_collisions(request.scene.path, {request.output}, streams)) return *code;
+  if (const auto problem = runtime::check_file_path(request.output)) return fail(streams, kIo, *problem);
+  auto source = read_scene(request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
+  const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
+  const auto& scene = std::get<compiler::CompiledScene>(compiled);
+  const auto chosen = choose_box(request, scene, streams);
+  if (const auto* code = std::get_if<ExitCode>(&chosen)) return *code;
+  const auto& [box, is_clipped] = std::get<MeshBox>(chosen);
+
+  const auto start = std::chrono::steady_clock::now();
+  runtime::MeshOptions options;
+  const double resolution = request.resolution ? *request.resolution : kDefaultResolution;
+  options.tolerance = request.tolerance.value_or(runtime::tolerance_of(box, resolution));
+  options.is_clipped = is_clipped;
+  options.simplifies = !request.plain;
+  options.memory = allowed_memory(request.scene.limits);
+  options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  runtime::MeshResult result = runtime::make_mesh(scene, box, options);
+  warn_of_lost_parts(scene, result, streams);
+  if (result.end != runtime::MeshResult::End::Done) return fail_to_mesh(request, result, options.memory, streams);
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  const runtime::MeshDocument document = make_document(request, scene, std::move(result.mesh));
+  if (const auto problem = write_document(request, document)) return fail(streams, kIo, *problem);
+  summarise(request, scene, result, document, time.count(), streams);
+  return kDone;
+}
+
+}  // namespace fathom::cli

@@ -1,0 +1,31 @@
+// Materials as mesh formats know them: one colour and a few numbers, without textures.
+// Tested by: tests/runtime/mesh/mesh_file_test.cpp
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "compiler/scene/compiled_scene.h"
+#include "runtime/mesh/mesh.h"
+
+namespace fathom::runtime {
+
+struct MeshMaterial {
+  std::string name;
+  glm::dvec3 color{0.8};  // linear sRGB
+  glm::dvec3 emission{0};
+  double metalness = 0, roughness = 1, opacity = 1;
+};
+
+// The colour as an sRGB signal of 8 bits.
+std::array<std::uint8_t, 3> color_bytes(const MeshMaterial& material);
+
+// Returns the materials of a scene, and appends to `of_surface` the index of each surface's material. The colour of a
+// textured material is the mean over triangles of the mesh.
+std::vector<MeshMaterial> mesh_materials(const compiler::CompiledScene& scene, const TriangleMesh& mesh,
+                                         std::vector<std::uint32_t>& of_surface);
+
+}  // namespace fathom::runtime

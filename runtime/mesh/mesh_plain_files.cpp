@@ -1,0 +1,113 @@
+// STL, PLY and OBJ.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "compiler/scene/srgb.h"
+#include "runtime/mesh/mesh_bytes.h"
+#include "runtime/mesh/mesh_file.h"
+
+namespace fathom::runtime {
+namespace {
+
+// Returns for each vertex the material of its first triangle.
+std::vector<std::uint32_t> vertex_materials(const MeshDocument& document) {
+  std::vector<std::uint32_t> of(document.mesh.vertices.size(), 0xffffffff);
+  for (const Triangle& triangle : document.mesh.triangles) {
+    for (const std::uint32_t v : triangle.vertices) of[v] = std::min(of[v], document.material_of[triangle.surface]);
+  }
+  return of;
+}
+
+std::string mtl_color(glm::dvec3 color) { return fmt::format("{:.6g} {:.6g} {:.6g}", color.x, color.y, color.z); }
+
+}  // namespace
+
+const MeshFormatInfo* mesh_format_of(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string_view::npos || dot == 0 || path[dot - 1] == '/') return nullptr;
+  std::string ending(path.substr(dot + 1));
+  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const MeshFormatInfo& info : kMeshFormats) {
+    if (info.ending == ending) return &info;
+  }
+  return nullptr;
+}
+
+std::vector<std::uint8_t> encode_stl(const MeshDocument& document) {
+  constexpr std::size_t kHeader = 80;
+  MeshBytes bytes;
+  // A header that begins with `solid` would be taken for a text.
+  std::string header = "fathom: " + word_of(document.name, "mesh");
+  header.resize(kHeader, ' ');
+  bytes.text(header);
+  bytes.u32(static_cast<std::uint32_t>(document.mesh.triangles.size()));
+  for (const Triangle& triangle : document.mesh.triangles) {
+    const auto corners = document.mesh.corners(triangle);
+    const glm::dvec3 area = area_normal(corners);
+    const double length = glm::length(area);
+    for (int i = 0; i < 3; ++i) bytes.f32(length > 0 ? area[i] / length : 0);
+    for (const glm::dvec3& corner : corners) {
+      for (int i = 0; i < 3; ++i) bytes.f32(corner[i]);
+    }
+    bytes.u16(0);
+  }
+  return bytes.take();
+}
+
+std::vector<std::uint8_t> encode_ply(const MeshDocument& document) {
+  MeshBytes bytes;
+  constexpr std::string_view kColor = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  bytes.text(fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\n{}element face {}\nproperty list uchar int vertex_indices\n{}end_header\n",
+      word_of(document.name, "mesh"), document.mesh.vertices.size(), kColor, document.mesh.triangles.size(), kColor));
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  for (const MeshMaterial& material : document.materials) colors.push_back(color_bytes(material));
+  const std::vector<std::uint32_t> materials = vertex_materials(document);
+  for (std::size_t v = 0; v < document.mesh.vertices.size(); ++v) {
+    for (int i = 0; i < 3; ++i) bytes.f32(document.mesh.vertices[v][i]);
+    for (const std::uint8_t part : colors[materials[v]]) bytes.byte(part);
+  }
+  for (const Triangle& triangle : document.mesh.triangles) {
+    bytes.byte(3);
+    for (const std::uint32_t v : triangle.vertices) bytes.u32(v);
+    for (const std::uint8_t part : colors[document.material_of[triangle.surface]]) bytes.byte(part);
+  }
+  return bytes.take();
+}
+
+std::vector<std::uint8_t> encode_obj(const MeshDocument& document, std::string_view material_file) {
+  fmt::memory_buffer text;
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "mtllib {}\no {}\n", material_file, word_of(document.name, "mesh"));
+  for (const glm::dvec3& v : document.mesh.vertices) {
+    fmt::format_to(out, "v {} {} {}\n", static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+  }
+  for (std::uint32_t material = 0; material < document.materials.size(); ++material) {
+    bool named = false;
+    for (const Triangle& triangle : document.mesh.triangles) {
+      if (document.material_of[triangle.surface] != material) continue;
+      if (!named) fmt::format_to(out, "usemtl {}\n", word_of(document.materials[material].name, "default"));
+      named = true;
+      const auto& v = triangle.vertices;
+      fmt::format_to(out, "f {} {} {}\n", v[0] + 1, v[1] + 1, v[2] + 1);
+    }
+  }
+  return to_bytes({text.data(), text.size()});
+}
+
+std::vector<std::uint8_t> encode_mtl(const MeshDocument& document) {
+  std::string text;
+  for (const MeshMaterial& m : document.materials) {
+    // Exporters write sRGB signals, and Blender reads them as such.
+    const auto bytes = color_bytes(m);
+    const glm::dvec3 signal = glm::dvec3(bytes[0], bytes[1], bytes[2]) / 255.0;
+    text += fmt::format("newmtl {}\nKd {}\nKe {}\nd {:.6g}\nPr {:.6g}\nPm {:.6g}\n", word_of(m.name, "default"),
+                        mtl_color(signal), mtl_color(m.emission), m.opacity, m.roughness, m.metalness);
+  }
+  return to_bytes(text);
+}
+
+}  // namespace fathom::runtime
