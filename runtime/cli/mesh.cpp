@@ -226,10 +226,17 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
   runtime::MeshOptions options;
   const double resolution = request.resolution ? *request.resolution : kDefaultResolution;
   options.tolerance = request.tolerance.value_or(runtime::tolerance_of(box, resolution));
+  options.deviation = request.tolerance ? options.tolerance : runtime::fine_deviation(options.tolerance);
   options.is_clipped = is_clipped;
   options.simplifies = !request.plain;
   options.memory = allowed_memory(request.scene.limits);
   options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  auto last = start;
+  options.progress = [&](std::string_view step) {
+    const auto now = std::chrono::steady_clock::now();
+    if (streams.verbosity > 0) note(streams, fmt::format("{:.2f} s before: {}", std::chrono::duration<double>(now - last).count(), step));
+    last = now;
+  };
   runtime::MeshResult result = runtime::make_mesh(scene, box, options);
   warn_of_lost_parts(scene, result, streams);
   if (result.end != runtime::MeshResult::End::Done) return fail_to_mesh(request, result, options.memory, streams);

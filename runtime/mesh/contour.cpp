@@ -7,9 +7,6 @@
 namespace fathom::runtime {
 namespace {
 
-// Distance of a vertex from the sides of its cell, as a share of the cell's edge, so that vertices of different cells
-// stay different after rounding to float.
-constexpr double kCellInset = 0x1p-8;
 // Eigenvalues below this share of the largest count as zero: creases flatter than some twenty degrees are surfaces.
 constexpr double kFlatShare = 0.03;
 
@@ -43,10 +40,7 @@ class DualContour {
     LatticeKey edges[2];
   };
 
-  compiler::Box cell_box(LatticePlace place) const {
-    const glm::dvec3 lo(lattice_.corner(place)), hi(lattice_.corner(place.corner(7)));
-    return {lo + kCellInset * (hi - lo), hi - kCellInset * (hi - lo)};
-  }
+  compiler::Box cell_box(LatticePlace place) const { return inset_box(lattice_, place); }
   LatticeKey edge_key(LatticePlace cell, int edge) const {
     const CubeEdge ends = cube_edge(edge);
     return key_of(cell.corner(ends.lower), ends.axis);
@@ -89,17 +83,19 @@ class DualContour {
         vertex += 0.25 * (middle - vertex) + kCellInset * (middle - box.lo) * static_cast<double>(cycle);
       }
     }
-    append(vertex, quadric, middle);
+    append(vertex, quadric, middle, key_of(place));
   }
 
   // Appends a vertex with its planes, which are relative to `middle`.
-  std::uint32_t append(glm::dvec3 vertex, const Quadric& quadric, glm::dvec3 middle) {
+  std::uint32_t append(glm::dvec3 vertex, const Quadric& quadric, glm::dvec3 middle,
+                       LatticeKey cell = Contour::kNoCell) {
     Quadric moved = quadric;
     const glm::dvec3 turned = quadric.times(middle);
     moved.c += 2 * glm::dot(quadric.b, middle) + glm::dot(middle, turned);
     moved.b += turned;
     result_.mesh.vertices.push_back(vertex);
     result_.quadrics.push_back(moved);
+    result_.cells.push_back(cell);
     return static_cast<std::uint32_t>(result_.mesh.vertices.size() - 1);
   }
 
@@ -208,6 +204,11 @@ class DualContour {
 };
 
 }  // namespace
+
+compiler::Box inset_box(const CellLattice& lattice, LatticePlace cell) {
+  const glm::dvec3 lo(lattice.corner(cell)), hi(lattice.corner(cell.corner(7)));
+  return {lo + kCellInset * (hi - lo), hi - kCellInset * (hi - lo)};
+}
 
 Contour contour(const CellLattice& lattice, const SignedLattice& signs, const std::vector<Crossing>& crossings) {
   return DualContour(lattice, signs, crossings).run();

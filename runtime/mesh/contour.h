@@ -26,7 +26,16 @@ namespace fathom::runtime {
 struct Contour {
   TriangleMesh mesh;
   std::vector<Quadric> quadrics;  // [vertex] of the tangent planes at the crossings around
+  // [vertex] its cell; kNoCell for a vertex on a face.
+  static constexpr LatticeKey kNoCell = ~LatticeKey{0};
+  std::vector<LatticeKey> cells;
 };
+
+// Distance of a vertex from the sides of its cell, as a share of the cell's edge, so that vertices of different cells
+// stay different after rounding to float.
+inline constexpr double kCellInset = 0x1p-8;
+// Returns the part of a cell in which its vertices stay.
+compiler::Box inset_box(const CellLattice& lattice, LatticePlace cell);
 
 // Makes the mesh. `crossings` has one entry per edge of `signs`.
 Contour contour(const CellLattice& lattice, const SignedLattice& signs, const std::vector<Crossing>& crossings);

@@ -10,90 +10,111 @@ namespace fathom::runtime {
 namespace {
 
 // Radii of the discs, as shares of the distance: first large ones, which need few samples, then small ones.
-constexpr double kDiscShares[] = {0.6, 0.3};
-constexpr std::size_t kSampleBatch = 512;
+constexpr double kDiscShares[] = {0.6, 0.3, 0.15};
 
-struct Disc {
-  glm::dvec3 centre;
-  double radius;
-};
-
-// Returns the smallest disc around a triangle.
-Disc disc_around(const DistanceProof::Corners& p) {
-  double most = -1;
+// Returns the start of a triangle's longest edge.
+std::size_t longest_edge(const DistanceProof::Corners& p) {
   std::size_t longest = 0;
-  double squares[3];
+  double most = -1;
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 edge = p[(i + 1) % 3] - p[i];
-    squares[i] = glm::dot(edge, edge);
-    if (squares[i] > most) most = squares[i], longest = i;
+    const double square = glm::dot(edge, edge);
+    if (square > most) most = square, longest = i;
   }
-  const glm::dvec3 a = p[longest], b = p[(longest + 1) % 3], c = p[(longest + 2) % 3];
-  const double others = squares[(longest + 1) % 3] + squares[(longest + 2) % 3];
-  if (others <= most * (1 + 1e-9)) return {0.5 * (a + b), 0.5 * std::sqrt(most)};
-  // The circumscribed circle of an acute triangle.
-  const glm::dvec3 u = b - a, v = c - a, n = glm::cross(u, v);
-  const glm::dvec3 to = (glm::cross(n, u) * glm::dot(v, v) + glm::cross(v, n) * glm::dot(u, u)) / (2 * glm::dot(n, n));
-  const double radius = std::sqrt(std::max({glm::dot(to, to), glm::dot(to - u, to - u), glm::dot(to - v, to - v)}));
-  return {a + to, radius};
+  return longest;
 }
 
 }  // namespace
 
 DistanceProof::DistanceProof(const MeshField& field) : field_(field), scratch_(std::make_unique<MeshField::Scratch>()) {}
 
-bool DistanceProof::check_samples() {
-  const std::size_t count = samples_.size();
-  values_.resize(count + 16);
-  field_.evaluate(samples_.from(0), count, MeshField::Values::Distance, values_.data(), *scratch_);
-  evaluations_ += count;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (field_.side(samples_[i], values_[i]) != (i % 2 == 0 ? Side::Outside : Side::Inside)) return false;
-  }
-  samples_.clear();
-  return true;
+// Returns the smallest disc around a triangle.
+DistanceProof::Disc DistanceProof::disc_around(const Corners& p) {
+  const std::size_t longest = longest_edge(p);
+  const glm::dvec3 a = p[longest], u = p[(longest + 1) % 3] - a, v = p[(longest + 2) % 3] - a;
+  const glm::dvec3 last = v - u;
+  const double uu = glm::dot(u, u), vv = glm::dot(v, v);
+  if (vv + glm::dot(last, last) <= uu * (1 + 1e-9)) return {a + 0.5 * u, 0.5 * std::sqrt(uu)};
+  // The circumscribed circle of an acute triangle.
+  const glm::dvec3 n = glm::cross(u, v);
+  const glm::dvec3 to = (glm::cross(n, u) * vv + glm::cross(v, n) * uu) / (2 * glm::dot(n, n));
+  return {a + to, std::sqrt(std::max({glm::dot(to, to), glm::dot(to - u, to - u), glm::dot(to - v, to - v)}))};
 }
 
-// Adds the samples of discs of at most `radius` that cover the triangle, and checks full batches.
-bool DistanceProof::holds_with(const Corners& triangle, double radius, double distance) {
-  const glm::dvec3 normal = area_normal(triangle);
-  const double length = glm::length(normal);
-  if (!(length > 0)) return false;
-  pieces_.assign(1, triangle);
+// Covers the pieces by discs of the round's radius and samples them. Pieces without a proof are open afterwards.
+void DistanceProof::try_pieces(const Round& round) {
+  constexpr std::size_t kDiscs = 256;  // sampled together
+  open_.clear();
   while (!pieces_.empty()) {
-    const Corners p = pieces_.back();
+    const Piece piece = pieces_.back();
     pieces_.pop_back();
+    const Corners& p = piece.corners;
     const Disc disc = disc_around(p);
-    if (disc.radius <= radius) {
-      // Rounding to float moves a sample by less than an ulp per coordinate.
-      const double rounding = 0x1p-22 * std::max(1e-30, compiler::largest_part(disc.centre));
-      const glm::dvec3 offset = (distance - disc.radius - rounding) / length * normal;
-      samples_.push_back(disc.centre + offset);
-      samples_.push_back(disc.centre - offset);
-      if (samples_.size() >= kSampleBatch && !check_samples()) return false;
+    if (disc.radius <= round.radius) {
+      covered_.push_back(piece);
+      discs_.push_back(disc);
+      if (covered_.size() == kDiscs) sample(round);
       continue;
     }
-    std::size_t longest = 0;
-    double most = -1;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double edge = glm::distance(p[i], p[(i + 1) % 3]);
-      if (edge > most) most = edge, longest = i;
-    }
+    const std::size_t longest = longest_edge(p);
     const glm::dvec3 a = p[longest], b = p[(longest + 1) % 3], c = p[(longest + 2) % 3], middle = 0.5 * (a + b);
-    pieces_.push_back({a, middle, c});
-    pieces_.push_back({middle, b, c});
+    pieces_.push_back({{a, middle, c}, piece.normal});
+    pieces_.push_back({{middle, b, c}, piece.normal});
   }
-  return true;
+  sample(round);
 }
 
-bool DistanceProof::holds(double distance) {
+void DistanceProof::sample(const Round& round) {
+  samples_.clear();
+  for (std::size_t i = 0; i < covered_.size(); ++i) {
+    const Disc& disc = discs_[i];
+    // Rounding to float moves a sample by less than an ulp per coordinate.
+    const double rounding = 0x1p-22 * std::max(1e-30, compiler::largest_part(disc.centre));
+    const double most = std::min(round.deviation, round.distance - disc.radius);
+    const glm::dvec3 offset = (most - rounding) * covered_[i].normal;
+    samples_.push_back(disc.centre + offset);
+    samples_.push_back(disc.centre - offset);
+  }
+  values_.resize(samples_.size() + 16);
+  field_.evaluate(samples_.from(0), samples_.size(), MeshField::Values::Distance, values_.data(), *scratch_);
+  for (std::size_t i = 0; i < covered_.size(); ++i) {
+    const bool proved = field_.side(samples_[2 * i], values_[2 * i]) == Side::Outside &&
+                        field_.side(samples_[2 * i + 1], values_[2 * i + 1]) == Side::Inside;
+    if (!proved) open_.push_back(covered_[i]);
+  }
+  covered_.clear();
+  discs_.clear();
+}
+
+// Replaces the normals of the pieces by the field's gradients in their middles.
+void DistanceProof::turn_to_gradients() {
+  samples_.clear();
+  for (const Piece& piece : pieces_) samples_.push_back(disc_around(piece.corners).centre);
+  field_.find_surfaces(samples_, gradients_, 1);
+  for (std::size_t i = 0; i < pieces_.size(); ++i) pieces_[i].normal = gradients_[i].normal;
+}
+
+bool DistanceProof::holds(double distance, double deviation, bool any_direction) {
+  pieces_.clear();
+  for (const Corners& triangle : triangles_) {
+    const glm::dvec3 normal = area_normal(triangle);
+    const double length = glm::length(normal);
+    if (!(length > 0) && !any_direction) return false;
+    pieces_.push_back({triangle, length > 0 ? normal / length : glm::dvec3(0)});
+  }
   for (const double share : kDiscShares) {
-    samples_.clear();
-    bool held = true;
-    for (std::size_t i = 0; held && i < triangles_.size(); ++i) {
-      held = holds_with(triangles_[i], share * distance, distance);
+    const Round round{distance, deviation, share * distance};
+    try_pieces(round);
+    if (open_.empty()) return true;
+    std::swap(pieces_, open_);
+    if (any_direction) {
+      const std::vector<Piece> kept = pieces_;
+      turn_to_gradients();
+      try_pieces(round);
+      if (open_.empty()) return true;
+      pieces_ = kept;
     }
-    if (held && check_samples()) return true;
+    if ((1 - share) * distance >= deviation) return false;  // smaller discs would move the samples no further
   }
   return false;
 }

@@ -13,27 +13,28 @@ constexpr double kFineDepths[] = {0x1p-12, 0x1p-10, 0x1p-8, 0x1p-6};
 constexpr int kDepthsPerCell = 16, kEvenDepths = 32;
 constexpr int kAllDepths = static_cast<int>(std::size(kFineDepths)) + kEvenDepths;
 constexpr int kNewtonSteps = 4;
+// Number of cells by which the mesh may fall short of a sharp edge or tip, which is thin at any resolution.
+constexpr int kReach = 2;
 
 double depth(int i) {
   constexpr int kFine = static_cast<int>(std::size(kFineDepths));
   return i < kFine ? kFineDepths[i] : static_cast<double>(i - kFine + 1) / kDepthsPerCell;
 }
 
-// Returns the cells without signs of both kinds, in themselves and in all their neighbours.
-std::vector<std::uint32_t> plain_cells(const SignedLattice& signs) {
-  std::vector<std::uint32_t> plain;
-  for (std::uint32_t cell = 0; cell < signs.cells().size(); ++cell) {
-    const LatticePlace place = place_of(signs.cells()[cell]);
-    bool crossed = false;
-    for (int i = 0; i < 27 && !crossed; ++i) {
-      const LatticePlace near = place.moved(0, i % 3 - 1).moved(1, i / 3 % 3 - 1).moved(2, i / 9 - 1);
-      if (std::min({near.at[0], near.at[1], near.at[2]}) < 0) continue;
-      const std::uint32_t other = signs.cells().find(key_of(near));
-      crossed = other != KeyMap::kNone && signs.is_crossed(other);
+// True if a cell with signs of both kinds is within `reach` cells.
+bool is_near_crossed(const SignedLattice& signs, std::uint32_t cell, int reach) {
+  const LatticePlace place = place_of(signs.cells()[cell]);
+  for (int z = -reach; z <= reach; ++z) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int x = -reach; x <= reach; ++x) {
+        const LatticePlace near = place.moved(0, x).moved(1, y).moved(2, z);
+        if (std::min({near.at[0], near.at[1], near.at[2]}) < 0) continue;
+        const std::uint32_t other = signs.cells().find(key_of(near));
+        if (other != KeyMap::kNone && signs.is_crossed(other)) return true;
+      }
     }
-    if (!crossed) plain.push_back(cell);
   }
-  return plain;
+  return false;
 }
 
 // A search in one cell.
@@ -50,7 +51,8 @@ class LostPartSearch {
       : field_(field), lattice_(lattice), signs_(signs), threads_(threads) {}
 
   std::vector<LostPart> run() {
-    for (const std::uint32_t cell : plain_cells(signs_)) {
+    for (std::uint32_t cell = 0; cell < signs_.cells().size(); ++cell) {
+      if (is_near_crossed(signs_, cell, 1)) continue;
       const LatticePlace place = place_of(signs_.cells()[cell]);
       const glm::dvec3 lo(lattice_.corner(place)), hi(lattice_.corner(place.corner(7)));
       searches_.push_back({cell, signs_.inside(cell) != 0, 0.5 * (lo + hi), glm::dvec3(0)});
@@ -98,7 +100,7 @@ class LostPartSearch {
         if (beyond) last = i;
       }
       // The other side further than a cell away is a part of another cell.
-      if (first < 0 || depth(first) > 1) continue;
+      if (first < 0 || depth(first) > 1 || is_near_crossed(signs_, searches_[s].cell, kReach)) continue;
       lost.push_back(s);
       thickness.push_back((last + 1 < kAllDepths ? depth(last + 1) : depth(last)) * lattice_.cell);
       places.push_back(searches_[s].point + depth(first) * lattice_.cell * searches_[s].towards);

@@ -1,6 +1,7 @@
 // Parts of the scene that a lattice loses because they are thinner than its cells.
 //
-// A cell that may hold the surface, but has no corner on the other side and no crossed cell nearby, is searched along
+// A cell that may hold the surface, but has no corner on the other side and no crossed cell within two cells, is
+// searched along
 // the field's gradient. A point on the other side is a lost part: of the solid if the corners are outside, of a gap if
 // they are inside.
 // Tested by: tests/runtime/mesh/lost_parts_test.cpp

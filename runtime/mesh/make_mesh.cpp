@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
-#include <unordered_set>
 
 #include "runtime/mesh/contour.h"
 #include "runtime/mesh/distance_proof.h"
 #include "runtime/mesh/find_cells.h"
+#include "runtime/mesh/move_to_surface.h"
 #include "runtime/mesh/simplify.h"
 #include "vm/program/parallel_for.h"
 
@@ -19,11 +19,11 @@ namespace {
 constexpr double kDiagonal = 1.7320508 * (1 + 0x1p-10);
 // Bytes per cell that may hold the surface, measured as the process's largest size over the number of cells.
 constexpr double kBytesPerCell = 900;
-// Factor from one distance to the next when the last proof looks for the least that it can prove, their number, and
-// the number of samples that it may take.
-constexpr double kTighter = 0.75;
-constexpr int kMostProofs = 12;
-constexpr std::size_t kMostSamples = 48'000'000;
+// Distances that the last proof tries, from one slightly above the deviation upwards, and the max number of samples.
+constexpr double kFirstProof = 1.2, kNextProof = 1.25;
+constexpr double kMostSamples = 24e6;
+// Edge of the blocks that threads simplify, in cells.
+constexpr double kBlockCells = 40;
 // Evaluations per cell, for the decision what preparing the field may cost.
 constexpr double kEvaluationsPerCell = 60;
 
@@ -37,58 +37,64 @@ Field prepare_field(const compiler::CompiledScene& scene, double cells, int thre
   return field;
 }
 
-// Moves vertices apart that floats do not tell apart: readers of formats without indices join them. Moves are of one
-// ulp, along one axis after the other.
-void separate(TriangleMesh& mesh) {
+// Moves vertices apart that floats do not tell apart in the scene's coordinates: readers of formats without indices
+// join them. Moves are of one ulp, along one axis after the other.
+void separate(TriangleMesh& mesh, glm::dvec3 origin) {
   const auto less = [](const glm::vec3& a, const glm::vec3& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
   };
+  const auto place = [&](std::uint32_t v) { return glm::vec3(mesh.vertices[v] + origin); };
   std::vector<std::uint32_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0u);
-  constexpr int kRounds = 8;
+  constexpr int kRounds = 24;
   for (int round = 0; round < kRounds; ++round) {
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return less(glm::vec3(mesh.vertices[a]), glm::vec3(mesh.vertices[b]));
-    });
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return less(place(a), place(b)); });
+    const int axis = round % 3;
     bool moved = false;
-    for (std::size_t i = 1; i < order.size(); ++i) {
-      const glm::vec3 here(mesh.vertices[order[i]]);
-      if (glm::vec3(mesh.vertices[order[i - 1]]) != here) continue;
-      const int axis = round % 3;
-      mesh.vertices[order[i]][axis] = static_cast<double>(std::nextafter(here[axis], std::numeric_limits<float>::infinity()));
+    for (std::size_t i = order.size(); i-- > 1;) {
+      const glm::vec3 here = place(order[i]);
+      if (place(order[i - 1]) != here) continue;
+      const float next = std::nextafter(here[axis], std::numeric_limits<float>::infinity());
+      mesh.vertices[order[i]][axis] = static_cast<double>(next) - origin[axis];
       moved = true;
     }
     if (!moved) return;
   }
 }
 
-// Returns true if all triangles are proved within `distance`. The result is the same for any number of threads.
-bool holds_for_all(const MeshField& field, const TriangleMesh& mesh, double distance, int threads) {
-  constexpr std::size_t kBatch = 256;
-  std::atomic<bool> held = true;
+// Returns the triangles among `some` that are not proved within `distance`, the same for any number of threads.
+std::vector<std::uint32_t> unproved(const MeshField& field, const TriangleMesh& mesh,
+                                    const std::vector<std::uint32_t>& some, double distance, int threads) {
+  std::vector<std::uint8_t> held(some.size());
+  constexpr std::size_t kBatch = 8;
   parallel_for(
-      threads, (mesh.triangles.size() + kBatch - 1) / kBatch, [&] { return std::make_unique<DistanceProof>(field); },
+      threads, (some.size() + kBatch - 1) / kBatch, [&] { return std::make_unique<DistanceProof>(field); },
       [&](std::unique_ptr<DistanceProof>& proof, std::size_t batch) {
-        if (!held) return;
-        proof->clear();
-        const std::size_t end = std::min(mesh.triangles.size(), (batch + 1) * kBatch);
-        for (std::size_t i = batch * kBatch; i < end; ++i) proof->add(mesh.corners(mesh.triangles[i]));
-        if (!proof->holds(distance)) held = false;
+        for (std::size_t i = batch * kBatch; i < std::min(some.size(), (batch + 1) * kBatch); ++i) {
+          proof->clear();
+          proof->add(mesh.corners(mesh.triangles[some[i]]));
+          held[i] = proof->is_near(distance);
+        }
       });
-  return held;
+  std::vector<std::uint32_t> left;
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    if (!held[i]) left.push_back(some[i]);
+  }
+  return left;
 }
 
-// Returns the least distance that is proved for the mesh, starting from one that holds by construction.
-double tighten(const MeshField& field, const TriangleMesh& mesh, double distance, int threads) {
+// Returns the least distance that is proved for the mesh, at most `tolerance`, which holds by construction.
+double prove(const MeshField& field, const TriangleMesh& mesh, double deviation, double tolerance, int threads) {
   const double area = measure(mesh).area;
-  for (int i = 0; i < kMostProofs; ++i) {
-    const double next = kTighter * distance;
-    // Four samples per square of the radius of a disc, and twice as many for the second try.
-    if (24 * area / (next * next) > static_cast<double>(kMostSamples)) break;
-    if (!holds_for_all(field, mesh, next, threads)) break;
-    distance = next;
+  std::vector<std::uint32_t> left(mesh.triangles.size());
+  std::iota(left.begin(), left.end(), 0u);
+  for (double distance = kFirstProof * deviation; distance < tolerance; distance *= kNextProof) {
+    // Flat parts take about ten samples per square of the distance.
+    if (10 * area > kMostSamples * distance * distance) continue;
+    left = unproved(field, mesh, left, distance, threads);
+    if (left.empty()) return distance;
   }
-  return distance;
+  return tolerance;
 }
 
 std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t v) {
@@ -101,6 +107,11 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t v) {
 double tolerance_of(const compiler::Box& box, double resolution) {
   const glm::dvec3 size = box.hi - box.lo;
   return kDiagonal * std::max({size.x, size.y, size.z}) / resolution;
+}
+
+double fine_deviation(double tolerance) {
+  constexpr double kCellShare = 0.2;
+  return kCellShare * tolerance / kDiagonal;
 }
 
 MeshMeasures measure(const TriangleMesh& mesh) {
@@ -151,6 +162,7 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
     found.cells = {};
     result.lost = find_lost_parts(field, lattice, signs, options.threads);
     contoured = contour(lattice, signs, find_crossings(field, lattice, signs, options.threads));
+    move_to_surface(field, lattice, contoured, options.threads);
   }
   result.contour_triangles = contoured.mesh.triangles.size();
   if (contoured.mesh.triangles.empty()) {
@@ -162,12 +174,13 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
     std::vector<std::uint32_t> materials;
     for (const compiler::Surface& surface : scene.surfaces) materials.push_back(surface.material);
     if (materials.empty()) materials.push_back(0);
-    simplify(field, contoured, {options.tolerance, materials});
+    simplify(field, contoured,
+             {options.tolerance, options.deviation, kBlockCells * result.cell, options.threads, materials});
   }
   result.mesh = std::move(contoured.mesh);
-  separate(result.mesh);
+  separate(result.mesh, scene.origin);
   begin("proof");
-  result.bound = tighten(field, result.mesh, options.tolerance, options.threads);
+  result.bound = prove(field, result.mesh, options.deviation, options.tolerance, options.threads);
   return result;
 }
 

@@ -21,6 +21,9 @@ namespace fathom::runtime {
 
 struct MeshOptions {
   double tolerance = 0;     // max distance of the mesh from the surface, scene units
+  // Max distance from the surface at which simplification may leave samples of a triangle, about a cell apart, scene
+  // units; at most `tolerance`.
+  double deviation = 0;
   bool is_clipped = false;  // the solid is cut off at the box
   bool simplifies = true;
   double memory = 0;        // bytes
@@ -49,6 +52,8 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
 
 // Returns the tolerance for which a box has `resolution` cells along its longest side.
 double tolerance_of(const compiler::Box& box, double resolution);
+// Returns a deviation that a mesh of this tolerance keeps nearly everywhere without simplification.
+double fine_deviation(double tolerance);
 
 // Measures of a closed mesh: connected components, volume and area in scene units.
 struct MeshMeasures {
