@@ -1,7 +1,7 @@
 // Checks an STL file with CGAL: scripts/test-meshes compiles and calls this program.
 //
-// Prints: triangles, 1 if CGAL takes the triangles as a manifold, border edges, 1 if the mesh bounds a volume, pairs of
-// triangles that cross each other.
+// Prints: triangles, 1 if CGAL takes the triangles as a manifold, border edges, 1 if the mesh bounds a volume, pairs
+// of triangles that cross each other.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/STL.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>

@@ -59,6 +59,7 @@ const std::vector<std::string> kFolders = {
     "runtime/path",
     "runtime/slice",
     "runtime/mesh",
+    "runtime/mesh/files",
     "runtime",
     "runtime/chart",
     "runtime/live",

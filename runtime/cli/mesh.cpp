@@ -17,7 +17,7 @@
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/mesh/make_mesh.h"
-#include "runtime/mesh/mesh_file.h"
+#include "runtime/mesh/files/mesh_file.h"
 #include "vm/encoding/escape.h"
 
 namespace fathom::cli {
@@ -50,7 +50,8 @@ struct MeshRequest {
 
 std::string mesh_endings() {
   std::string endings;
-  for (const auto& format : runtime::kMeshFormats) endings += fmt::format("{}.{}", endings.empty() ? "" : ", ", format.ending);
+  for (const auto& format : runtime::kMeshFormats)
+    endings += fmt::format("{}.{}", endings.empty() ? "" : ", ", format.ending);
   return endings;
 }
 
@@ -58,7 +59,8 @@ OptionResult read_mesh_output(std::string_view text, MeshRequest& request) {
   request.output = text;
   request.format = runtime::mesh_format_of(text);
   if (request.format) return std::nullopt;
-  return OptionError{fmt::format("`{}` does not end in a mesh format's name", text), "valid endings: " + mesh_endings()};
+  return OptionError{fmt::format("`{}` does not end in a mesh format's name", text),
+                     "valid endings: " + mesh_endings()};
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, MeshRequest& request) {
@@ -68,7 +70,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   add_scene_arguments(arguments, request.scene);
   arguments.option("-o,--output", "FILE", "Mesh to write: " + mesh_endings(),
                    [&](std::string_view text) { return read_mesh_output(text, request); });
-  arguments.option("--tolerance", "D", "Max distance of the mesh from the surface, in scene units (as --resolution 256)",
+  arguments.option("--tolerance", "D",
+                   "Max distance of the mesh from the surface, in scene units (as --resolution 256)",
                    into(read_positive, request.tolerance));
   arguments.option("--resolution", "N", "Cells along the longest side, instead of --tolerance",
                    whole(request.resolution, 4, static_cast<int>(kMostResolution)));
@@ -83,7 +86,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    whole(request.threads, 1, 4096));
   if (const auto code = arguments.parse(args, streams)) return code;
   if (request.tolerance && request.resolution) {
-    return fail(streams, kUsage, "--tolerance and --resolution both say how fine the mesh is", {"give one of the two"});
+    return fail(streams, kUsage, "--tolerance and --resolution both say how fine the mesh is",
+                {"give one of the two"});
   }
   if (request.format) return std::nullopt;
   const std::string stem = request.scene.path == "-" ? "" : std::filesystem::path(request.scene.path).stem().string();
@@ -115,8 +119,8 @@ std::variant<MeshBox, ExitCode> choose_box(const MeshRequest& request, const com
   }
   const glm::dvec3 size = chosen.box.hi - chosen.box.lo;
   if (chosen.box.empty() || (chosen.box.finite() && !(std::min({size.x, size.y, size.z}) > 0))) {
-    return fail_about(request.scene, kBadScene, request.box ? "nothing of the scene is in the box" : "the scene is empty",
-                      {}, streams);
+    return fail_about(request.scene, kBadScene,
+                      request.box ? "nothing of the scene is in the box" : "the scene is empty", {}, streams);
   }
   if (chosen.box.finite()) return chosen;
   Help help = {"--box X0,Y0,Z0,X1,Y1,Z1 cuts the scene off at a box"};
@@ -134,8 +138,8 @@ ExitCode fail_to_mesh(const MeshRequest& request, const runtime::MeshResult& res
   }
   if (result.end == End::TooMany) {
     return fail_about(request.scene, kUsage,
-                      fmt::format("the mesh needs about {} of memory, and {} are allowed", format_bytes(result.memory),
-                                  format_bytes(memory)),
+                      fmt::format("the mesh needs about {} of memory, and {} are allowed",
+                                  format_bytes(result.memory), format_bytes(memory)),
                       {"give a larger --tolerance or a smaller --resolution",
                        compiler::raise(&compiler::Limits::memory, result.memory)},
                       streams);
@@ -144,7 +148,8 @@ ExitCode fail_to_mesh(const MeshRequest& request, const runtime::MeshResult& res
                     {"give a smaller --tolerance or a larger --resolution"}, streams);
 }
 
-void warn_of_lost_parts(const compiler::CompiledScene& scene, const runtime::MeshResult& result, const Streams& streams) {
+void warn_of_lost_parts(const compiler::CompiledScene& scene, const runtime::MeshResult& result,
+                        const Streams& streams) {
   for (const runtime::LostPart& part : result.lost) {
     const bool named = part.surface < scene.surfaces.size() && !scene.surfaces[part.surface].name.empty();
     const std::string name = named ? fmt::format("`{}`", scene.surfaces[part.surface].name) : "the scene";
@@ -173,14 +178,18 @@ runtime::MeshDocument make_document(const MeshRequest& request, const compiler::
 std::optional<std::string> write_document(const MeshRequest& request, const runtime::MeshDocument& document) {
   using runtime::MeshFormat;
   switch (request.format->format) {
-    case MeshFormat::Stl: return runtime::write_file(encode_stl(document), request.output);
-    case MeshFormat::Ply: return runtime::write_file(encode_ply(document), request.output);
-    case MeshFormat::Glb: return runtime::write_file(encode_glb(document), request.output);
+    case MeshFormat::Stl:
+      return runtime::write_file(encode_stl(document), request.output);
+    case MeshFormat::Ply:
+      return runtime::write_file(encode_ply(document), request.output);
+    case MeshFormat::Glb:
+      return runtime::write_file(encode_glb(document), request.output);
     case MeshFormat::ThreeMf: {
       const auto bytes = encode_3mf(document);
       return bytes ? runtime::write_file(*bytes, request.output) : fmt::format("cannot pack `{}`", request.output);
     }
-    case MeshFormat::Obj: break;
+    case MeshFormat::Obj:
+      break;
   }
   const std::filesystem::path materials = std::filesystem::path(request.output).replace_extension(".mtl");
   if (auto problem = runtime::write_file(encode_mtl(document), materials.string())) return problem;
@@ -193,17 +202,18 @@ void summarise(const MeshRequest& request, const compiler::CompiledScene& scene,
   for (const glm::dvec3& v : document.mesh.vertices) box = unite(box, {v, v});
   const glm::dvec3 size = box.hi - box.lo;
   const std::size_t components = runtime::measure(document.mesh).components;
-  say(streams, fmt::format("wrote {}: {} triangles, {} vertices, {}, {:.4g} x {:.4g} x {:.4g}{}{}", request.output,
-                           document.mesh.triangles.size(), document.mesh.vertices.size(),
-                           count_of(components, "component"), size.x, size.y, size.z, document.unit ? " " : "",
-                           document.unit ? document.unit->name : ""));
+  say(streams,
+      fmt::format("wrote {}: {} triangles, {} vertices, {}, {:.4g} x {:.4g} x {:.4g}{}{}", request.output,
+                  document.mesh.triangles.size(), document.mesh.vertices.size(), count_of(components, "component"),
+                  size.x, size.y, size.z, document.unit ? " " : "", document.unit ? document.unit->name : ""));
   // Files hold floats, whose rounding counts, too.
   const double rounding = 0x1p-23 * std::max(compiler::largest_part(box.lo), compiler::largest_part(box.hi));
   constexpr double kUp = 1.0005;  // so that four digits are not below the bound
-  say(streams, fmt::format("every point of the mesh is within {:.4g} of the surface ({})", kUp * (result.bound + rounding),
-                           scene.certified ? "proved" : "estimated: the float error of the scene is"));
-  say(streams, fmt::format("{} cells of {:.4g}, {} triangles before simplification, {:.2f} s", result.cells, result.cell,
-                           result.contour_triangles, seconds));
+  say(streams,
+      fmt::format("every point of the mesh is within {:.4g} of the surface ({})", kUp * (result.bound + rounding),
+                  scene.certified ? "proved" : "estimated: the float error of the scene is"));
+  say(streams, fmt::format("{} cells of {:.4g}, {} triangles before simplification, {:.2f} s", result.cells,
+                           result.cell, result.contour_triangles, seconds));
 }
 
 }  // namespace
@@ -234,7 +244,8 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
   auto last = start;
   options.progress = [&](std::string_view step) {
     const auto now = std::chrono::steady_clock::now();
-    if (streams.verbosity > 0) note(streams, fmt::format("{:.2f} s before: {}", std::chrono::duration<double>(now - last).count(), step));
+    if (streams.verbosity > 0)
+      note(streams, fmt::format("{:.2f} s before: {}", std::chrono::duration<double>(now - last).count(), step));
     last = now;
   };
   runtime::MeshResult result = runtime::make_mesh(scene, box, options);

@@ -191,7 +191,8 @@ bool EdgeCollapser::keeps_borders(std::uint32_t u, std::uint32_t v, Targets& tar
   // The vertex on the border, or at the junction, stays.
   const bool u_stays = kv == Kind::Inner || ku == Kind::Junction;
   const glm::dvec3 place = mesh_.vertices[u_stays ? u : v];
-  const auto stays = std::find_if(targets.begin(), targets.end(), [&](const Target& to) { return to.place == place; });
+  const auto stays =
+      std::find_if(targets.begin(), targets.end(), [&](const Target& to) { return to.place == place; });
   targets.fill(*stays);
   return true;
 }

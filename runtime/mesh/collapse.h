@@ -12,9 +12,16 @@
 
 #include "runtime/mesh/contour.h"
 #include "runtime/mesh/distance_proof.h"
-#include "runtime/mesh/simplify.h"
 
 namespace fathom::runtime {
+
+struct SimplifyOptions {
+  double tolerance = 0;  // max distance of any point from the surface, scene units
+  double deviation = 0;  // max distance of samples from the surface, scene units
+  double block = 0;      // edge of the blocks that threads simplify one by one, scene units
+  int threads = 1;
+  std::span<const std::uint32_t> material_of;  // [surface]
+};
 
 // A mesh with the triangles around each vertex. A dead triangle has the surface kDead.
 struct LinkedMesh {

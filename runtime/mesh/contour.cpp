@@ -198,8 +198,8 @@ class DualContour {
   const SignedLattice& signs_;
   const std::vector<Crossing>& crossings_;
   Contour result_;
-  std::vector<CellVertices> cells_;                   // [cell] of crossed cells
-  std::unordered_map<LatticeKey, ArcVertex> arcs_;    // [face]
+  std::vector<CellVertices> cells_;                 // [cell] of crossed cells
+  std::unordered_map<LatticeKey, ArcVertex> arcs_;  // [face]
   std::vector<std::uint32_t> polygon_;
 };
 

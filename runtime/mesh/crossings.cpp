@@ -8,7 +8,7 @@ namespace {
 // Root search on an edge, by false position with halved ends (Dowell and Jarratt, "A modified regula falsi method for
 // computing the root of an equation", 1971). A bisection every third time bounds the number of steps.
 struct EdgeSearch {
-  glm::vec3 start;             // the lower end
+  glm::vec3 start;  // the lower end
   int axis;
   float in, out;               // coordinates along the axis of a point inside and of one outside
   double f_in = 0, f_out = 0;  // values there, the Illinois factor included

@@ -26,7 +26,8 @@ std::size_t longest_edge(const DistanceProof::Corners& p) {
 
 }  // namespace
 
-DistanceProof::DistanceProof(const MeshField& field) : field_(field), scratch_(std::make_unique<MeshField::Scratch>()) {}
+DistanceProof::DistanceProof(const MeshField& field)
+    : field_(field), scratch_(std::make_unique<MeshField::Scratch>()) {}
 
 // Returns the smallest disc around a triangle.
 DistanceProof::Disc DistanceProof::disc_around(const Corners& p) {

@@ -46,7 +46,9 @@ class CellOctree {
   }
 
  private:
-  static int start(LatticePlace place, int axis, int level) { return place.at[static_cast<std::size_t>(axis)] << level; }
+  static int start(LatticePlace place, int axis, int level) {
+    return place.at[static_cast<std::size_t>(axis)] << level;
+  }
 
   void add_centre(LatticePlace node, int level) {
     glm::dvec3 lo, hi;

@@ -14,7 +14,7 @@ namespace fathom::runtime {
 struct FoundCells {
   std::vector<LatticeKey> cells;  // in Morton's order; empty if there are too many
   bool too_many = false;
-  std::size_t expected = 0;       // number of cells, an estimate if there are too many
+  std::size_t expected = 0;  // number of cells, an estimate if there are too many
 };
 
 // Finds the cells. Stops when there are more than `most`.

@@ -7,8 +7,8 @@
 namespace fathom::runtime {
 namespace {
 
-// Distances beyond the surface at which a search looks for the other side, in cells: a power of four each, then evenly
-// to two cells, which measure the thickness.
+// Distances beyond the surface at which a search looks for the other side, in cells: a power of four each, then
+// evenly to two cells, which measure the thickness.
 constexpr double kFineDepths[] = {0x1p-12, 0x1p-10, 0x1p-8, 0x1p-6};
 constexpr int kDepthsPerCell = 16, kEvenDepths = 32;
 constexpr int kAllDepths = static_cast<int>(std::size(kFineDepths)) + kEvenDepths;
@@ -84,7 +84,8 @@ class LostPartSearch {
   void look_beyond() {
     points_.clear();
     for (const Search& search : searches_) {
-      for (int i = 0; i < kAllDepths; ++i) points_.push_back(search.point + depth(i) * lattice_.cell * search.towards);
+      for (int i = 0; i < kAllDepths; ++i)
+        points_.push_back(search.point + depth(i) * lattice_.cell * search.towards);
     }
     field_.evaluate(points_, MeshField::Values::Distance, values_, threads_);
     std::vector<std::size_t> lost;
@@ -94,7 +95,8 @@ class LostPartSearch {
       int first = -1, last = -1;
       for (int i = 0; i < kAllDepths; ++i) {
         const std::size_t at = s * kAllDepths + static_cast<std::size_t>(i);
-        const bool beyond = field_.side(points_[at], values_[at]) == (searches_[s].inside ? Side::Outside : Side::Inside);
+        const bool beyond =
+            field_.side(points_[at], values_[at]) == (searches_[s].inside ? Side::Outside : Side::Inside);
         if (beyond && first < 0) first = i;
         if (first >= 0 && !beyond) break;
         if (beyond) last = i;

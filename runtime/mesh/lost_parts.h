@@ -2,9 +2,8 @@
 //
 // A cell that may hold the surface, but has no corner on the other side and no crossed cell within two cells, is
 // searched along
-// the field's gradient. A point on the other side is a lost part: of the solid if the corners are outside, of a gap if
-// they are inside.
-// Tested by: tests/runtime/mesh/lost_parts_test.cpp
+// the field's gradient. A point on the other side is a lost part: of the solid if the corners are outside, of a gap
+// if they are inside. Tested by: tests/runtime/mesh/lost_parts_test.cpp
 #pragma once
 
 #include <cstddef>

@@ -48,7 +48,8 @@ void separate(TriangleMesh& mesh, glm::dvec3 origin) {
   std::iota(order.begin(), order.end(), 0u);
   constexpr int kRounds = 24;
   for (int round = 0; round < kRounds; ++round) {
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return less(place(a), place(b)); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return less(place(a), place(b)); });
     const int axis = round % 3;
     bool moved = false;
     for (std::size_t i = order.size(); i-- > 1;) {

@@ -20,13 +20,13 @@
 namespace fathom::runtime {
 
 struct MeshOptions {
-  double tolerance = 0;     // max distance of the mesh from the surface, scene units
+  double tolerance = 0;  // max distance of the mesh from the surface, scene units
   // Max distance from the surface at which simplification may leave samples of a triangle, about a cell apart, scene
   // units; at most `tolerance`.
   double deviation = 0;
   bool is_clipped = false;  // the solid is cut off at the box
   bool simplifies = true;
-  double memory = 0;        // bytes
+  double memory = 0;  // bytes
   int threads = 1;
   // Called with the name of each step.
   std::function<void(std::string_view step)> progress;
@@ -39,9 +39,9 @@ struct MeshResult {
   // Distance within which every point of the mesh is of the surface, scene units. Proved, if the float error of the
   // field is (CompiledField::certified).
   double bound = 0;
-  double cell = 0;             // edge of the cells, scene units
-  std::size_t cells = 0;       // number of cells that may hold the surface
-  double memory = 0;           // bytes that the mesh needs, an estimate, if there are too many cells
+  double cell = 0;                    // edge of the cells, scene units
+  std::size_t cells = 0;              // number of cells that may hold the surface
+  double memory = 0;                  // bytes that the mesh needs, an estimate, if there are too many cells
   std::size_t contour_triangles = 0;  // before simplification
   std::vector<LostPart> lost;
 };

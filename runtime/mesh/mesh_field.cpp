@@ -97,10 +97,10 @@ void MeshField::find_surfaces(const PointArrays& points, std::vector<SurfacePoin
       threads, batches_of(points.size()), [] { return std::make_unique<Results>(); },
       [&](std::unique_ptr<Results>& found, std::size_t batch) {
         const std::size_t first = batch * kPointBatch, count = std::min(kPointBatch, points.size() - first);
-        field_->evaluate_surface(points.from(first), count,
-                                 {found->distance.data(), found->x.data(), found->y.data(), found->z.data(),
-                                  found->surface.data()},
-                                 found->workspace);
+        field_->evaluate_surface(
+            points.from(first), count,
+            {found->distance.data(), found->x.data(), found->y.data(), found->z.data(), found->surface.data()},
+            found->workspace);
         for (std::size_t i = 0; i < count; ++i) {
           const glm::dvec3 gradient(found->x[i], found->y[i], found->z[i]);
           const double length = glm::length(gradient);

@@ -65,7 +65,8 @@ void SignedLattice::read_corners(std::uint32_t first_cell, const SignSource& sou
   std::vector<std::array<std::uint32_t, 8>> corners_of(cells_.size() - first_cell);
   for (std::size_t i = 0; i < corners_of.size(); ++i) {
     const LatticePlace cell = place_of(cells_[first_cell + i]);
-    for (unsigned corner = 0; corner < 8; ++corner) corners_of[i][corner] = corners_.insert(key_of(cell.corner(corner)));
+    for (unsigned corner = 0; corner < 8; ++corner)
+      corners_of[i][corner] = corners_.insert(key_of(cell.corner(corner)));
   }
   std::vector<std::uint8_t> inside;
   source.corners(std::span(corners_.keys()).subspan(known), inside);

@@ -57,8 +57,7 @@ void simplify(const MeshField& field, Contour& contour, const SimplifyOptions& o
   add_border_planes(mesh, options);
   const Blocks blocks = find_blocks(mesh.vertices, options.block);
   parallel_for(
-      options.threads, blocks.vertices.size(),
-      [&] { return std::make_unique<EdgeCollapser>(mesh, field, options); },
+      options.threads, blocks.vertices.size(), [&] { return std::make_unique<EdgeCollapser>(mesh, field, options); },
       [&](std::unique_ptr<EdgeCollapser>& collapser, std::size_t block) {
         collapser->run(blocks.vertices[block], blocks.block_of);
       });

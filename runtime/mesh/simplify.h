@@ -1,8 +1,8 @@
 // Simplification of a closed mesh by edge collapses, each of which is proved: a collapse is accepted only if all
 // triangles that it changes lie within the tolerance of the surface (runtime/mesh/distance_proof.h).
 //
-// Blocks of the mesh are simplified side by side, each up to the triangles that reach into another block, and then the
-// whole.
+// Blocks of the mesh are simplified side by side, each up to the triangles that reach into another block, and then
+// the whole.
 //
 // The order of collapses follows the quadrics of the exact tangent planes. A collapse keeps the mesh a closed
 // manifold (the link condition), turns no triangle over, and keeps the borders between materials.
@@ -12,21 +12,9 @@
 // Tested by: tests/runtime/mesh/simplify_test.cpp
 #pragma once
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
-#include "runtime/mesh/contour.h"
+#include "runtime/mesh/collapse.h"
 
 namespace fathom::runtime {
-
-struct SimplifyOptions {
-  double tolerance = 0;                        // max distance of any point from the surface, scene units
-  double deviation = 0;                        // max distance of samples from the surface, scene units
-  double block = 0;                            // edge of the blocks that threads simplify one by one, scene units
-  int threads = 1;
-  std::span<const std::uint32_t> material_of;  // [surface]
-};
 
 // Simplifies the mesh in place. The result depends on the arguments alone.
 void simplify(const MeshField& field, Contour& contour, const SimplifyOptions& options);

@@ -26,7 +26,8 @@ TEST_CASE("cli: mesh writes every format and states its bound") {
     CHECK_THAT(result.err, Contains("every point of the mesh is within 0.0") && Contains("of the surface (proved)"));
     CHECK(folder.has("part." + ending));
   }
-  CHECK_THAT(folder.read("part.obj"), Contains("mtllib part.mtl\n") && Contains("usemtl red") && Contains("usemtl blue"));
+  CHECK_THAT(folder.read("part.obj"),
+             Contains("mtllib part.mtl\n") && Contains("usemtl red") && Contains("usemtl blue"));
   CHECK_THAT(folder.read("part.mtl"), Contains("newmtl red\nKd 1 0 0"));
 }
 

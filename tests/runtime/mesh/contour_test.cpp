@@ -25,7 +25,8 @@ SignSource random_signs(std::uint64_t seed, unsigned share, const CellLattice& l
   const auto sign = [=](LatticeKey key, unsigned among) { return mixed(key * 0x100000001b3 + seed) % 256 < among; };
   return {[=, &lattice](std::span<const LatticeKey> corners, std::vector<std::uint8_t>& inside) {
             inside.clear();
-            for (const LatticeKey key : corners) inside.push_back(!lattice.is_border(place_of(key)) && sign(key, share));
+            for (const LatticeKey key : corners)
+              inside.push_back(!lattice.is_border(place_of(key)) && sign(key, share));
           },
           [=](std::span<const LatticeKey> faces, std::vector<std::uint8_t>& inside) {
             inside.clear();

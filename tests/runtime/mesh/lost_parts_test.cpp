@@ -50,7 +50,8 @@ TEST_CASE("lost parts: a small ball and a narrow gap are named") {
 }
 
 TEST_CASE("lost parts: a scene of thick parts loses nothing") {
-  CHECK(meshed(test::compiled(objects(R"({"type": "sphere", "radius": 0.4, "translate": [0, 0.6, 0]})")), 40).lost.empty());
+  CHECK(meshed(test::compiled(objects(R"({"type": "sphere", "radius": 0.4, "translate": [0, 0.6, 0]})")), 40)
+            .lost.empty());
 }
 
 }  // namespace fathom::lost_parts_test

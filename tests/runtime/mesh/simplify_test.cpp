@@ -11,8 +11,8 @@ namespace {
 
 using namespace fathom::runtime;
 using fathom::test::faults_of;
-using fathom::test::MeshFaults;
 using fathom::test::meshed;
+using fathom::test::MeshFaults;
 
 }  // namespace
 

@@ -4,8 +4,8 @@
 
 #include <iterator>
 
-#include "runtime/mesh/mesh_bytes.h"
-#include "runtime/mesh/mesh_file.h"
+#include "runtime/mesh/files/mesh_bytes.h"
+#include "runtime/mesh/files/mesh_file.h"
 
 namespace fathom::runtime {
 namespace {
@@ -27,11 +27,20 @@ std::string attribute(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
     }
   }
   return out;
@@ -52,8 +61,10 @@ std::string model_xml(const MeshDocument& document) {
     fmt::format_to(out, "<base name=\"{}\" displaycolor=\"#{:02X}{:02X}{:02X}{:02X}\"/>\n",
                    attribute(material.name.empty() ? "default" : material.name), color[0], color[1], color[2], alpha);
   }
-  fmt::format_to(out, "</basematerials>\n<object id=\"2\" type=\"model\" name=\"{}\" pid=\"1\" pindex=\"0\"><mesh>\n<vertices>\n",
-                 attribute(document.name));
+  fmt::format_to(
+      out,
+      "</basematerials>\n<object id=\"2\" type=\"model\" name=\"{}\" pid=\"1\" pindex=\"0\"><mesh>\n<vertices>\n",
+      attribute(document.name));
   for (const glm::dvec3& v : document.mesh.vertices) {
     fmt::format_to(out, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", static_cast<float>(v.x), static_cast<float>(v.y),
                    static_cast<float>(v.z));
@@ -64,7 +75,8 @@ std::string model_xml(const MeshDocument& document) {
     fmt::format_to(out, "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\" pid=\"1\" p1=\"{}\"/>\n", v[0], v[1], v[2],
                    document.material_of[triangle.surface]);
   }
-  fmt::format_to(out, "</triangles>\n</mesh></object>\n</resources>\n<build><item objectid=\"2\"/></build>\n</model>\n");
+  fmt::format_to(out,
+                 "</triangles>\n</mesh></object>\n</resources>\n<build><item objectid=\"2\"/></build>\n</model>\n");
   return fmt::to_string(text);
 }
 

@@ -1,9 +1,8 @@
 // Mesh files: STL, PLY, OBJ with MTL, 3MF and GLB.
 //
-// Sources: the formats' specifications: Burns, "Automated fabrication", 1993 (binary STL); Turk, "The PLY polygon file
-// format", 1994; Wavefront, "Object files", 1993; 3MF Consortium, "Core specification 1.3", 2021; Khronos, "glTF 2.0",
-// 2021.
-// Tested by: tests/runtime/mesh/mesh_file_test.cpp
+// Sources: the formats' specifications: Burns, "Automated fabrication", 1993 (binary STL); Turk, "The PLY polygon
+// file format", 1994; Wavefront, "Object files", 1993; 3MF Consortium, "Core specification 1.3", 2021; Khronos,
+// "glTF 2.0", 2021. Tested by: tests/runtime/mesh/files/mesh_file_test.cpp
 #pragma once
 
 #include <array>
@@ -13,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/mesh/mesh_materials.h"
+#include "runtime/mesh/files/mesh_materials.h"
 
 namespace fathom::runtime {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "runtime/mesh/mesh_bytes.h"
-#include "runtime/mesh/mesh_file.h"
+#include "runtime/mesh/files/mesh_bytes.h"
+#include "runtime/mesh/files/mesh_file.h"
 
 namespace fathom::runtime {
 namespace {
@@ -37,7 +37,8 @@ struct GlbParts {
   Json views = Json::array(), accessors = Json::array();
 
   void close_view(std::size_t start, std::uint32_t target) {
-    views.push_back({{"buffer", 0}, {"byteOffset", start}, {"byteLength", binary.size() - start}, {"target", target}});
+    views.push_back(
+        {{"buffer", 0}, {"byteOffset", start}, {"byteLength", binary.size() - start}, {"target", target}});
   }
 };
 
@@ -50,8 +51,12 @@ void add_positions(const MeshDocument& document, GlbParts& parts) {
     lo = glm::min(lo, place), hi = glm::max(hi, place);
   }
   parts.close_view(0, kArrayBuffer);
-  parts.accessors.push_back({{"bufferView", 0}, {"componentType", kFloat}, {"count", document.mesh.vertices.size()},
-                             {"type", "VEC3"}, {"min", three(lo)}, {"max", three(hi)}});
+  parts.accessors.push_back({{"bufferView", 0},
+                             {"componentType", kFloat},
+                             {"count", document.mesh.vertices.size()},
+                             {"type", "VEC3"},
+                             {"min", three(lo)},
+                             {"max", three(hi)}});
 }
 
 // Adds the triangles of a material. Returns false if it has none.
@@ -64,7 +69,9 @@ bool add_triangles(const MeshDocument& document, std::uint32_t material, GlbPart
   const std::size_t count = (parts.binary.size() - start) / sizeof(std::uint32_t);
   if (count == 0) return false;
   parts.close_view(start, kElementArrayBuffer);
-  parts.accessors.push_back({{"bufferView", parts.views.size() - 1}, {"componentType", kUnsignedInt}, {"count", count},
+  parts.accessors.push_back({{"bufferView", parts.views.size() - 1},
+                             {"componentType", kUnsignedInt},
+                             {"count", count},
                              {"type", "SCALAR"}});
   return true;
 }
@@ -78,8 +85,8 @@ std::vector<std::uint8_t> encode_glb(const MeshDocument& document) {
   bool extended = false;
   for (std::uint32_t i = 0; i < document.materials.size(); ++i) {
     if (!add_triangles(document, i, parts)) continue;
-    primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"indices", parts.accessors.size() - 1},
-                          {"material", materials.size()}});
+    primitives.push_back(
+        {{"attributes", {{"POSITION", 0}}}, {"indices", parts.accessors.size() - 1}, {"material", materials.size()}});
     materials.push_back(material_json(document.materials[i]));
     extended |= materials.back().contains("extensions");
   }

@@ -1,4 +1,4 @@
-#include "runtime/mesh/mesh_file.h"
+#include "runtime/mesh/files/mesh_file.h"
 
 #include <zip.h>
 
@@ -53,7 +53,7 @@ TEST_CASE("mesh files: STL holds normals and corners") {
   REQUIRE(bytes.size() == 84 + 4 * 50);
   CHECK(std::memcmp(bytes.data(), "solid", 5) != 0);
   CHECK(read_at<std::uint32_t>(bytes, 80) == 4);
-  CHECK(read_at<float>(bytes, 84 + 8) == -1);           // the first normal is -z
+  CHECK(read_at<float>(bytes, 84 + 8) == -1);            // the first normal is -z
   CHECK(read_at<float>(bytes, 84 + 50 + 12 + 12) == 1);  // the second corner of the second triangle
 }
 
@@ -103,7 +103,8 @@ TEST_CASE("mesh files: 3MF is a zip with units and colours, the same at any time
   REQUIRE(bytes);
   CHECK(encode_3mf(tetrahedron()) == bytes);
   zip_error_t error;
-  zip_t* archive = zip_open_from_source(zip_source_buffer_create(bytes->data(), bytes->size(), 0, &error), ZIP_RDONLY, &error);
+  zip_t* archive =
+      zip_open_from_source(zip_source_buffer_create(bytes->data(), bytes->size(), 0, &error), ZIP_RDONLY, &error);
   REQUIRE(archive != nullptr);
   CHECK(zip_name_locate(archive, "[Content_Types].xml", 0) == 0);
   zip_file_t* file = zip_fopen(archive, "3D/3dmodel.model", 0);
@@ -113,7 +114,8 @@ TEST_CASE("mesh files: 3MF is a zip with units and colours, the same at any time
   zip_fclose(file);
   zip_discard(archive);
   CHECK_THAT(text, Contains("unit=\"inch\"") && Contains("name=\"red &lt;1&gt;\" displaycolor=\"#FF0000FF\""));
-  CHECK_THAT(text, Contains("<vertex x=\"0\" y=\"1\" z=\"0\"/>") && Contains("<triangle v1=\"1\" v2=\"2\" v3=\"3\" pid=\"1\" p1=\"1\"/>"));
+  CHECK_THAT(text, Contains("<vertex x=\"0\" y=\"1\" z=\"0\"/>") &&
+                       Contains("<triangle v1=\"1\" v2=\"2\" v3=\"3\" pid=\"1\" p1=\"1\"/>"));
 }
 
 }  // namespace fathom::mesh_file_test

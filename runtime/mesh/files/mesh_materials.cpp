@@ -1,4 +1,4 @@
-#include "runtime/mesh/mesh_materials.h"
+#include "runtime/mesh/files/mesh_materials.h"
 
 #include "compiler/scene/srgb.h"
 #include "runtime/material/material.h"
@@ -35,7 +35,8 @@ glm::dvec3 mean_color(const compiler::CompiledScene& scene, const Materials& mat
     glm::dvec3 place = points[i];
     if (materials.uses_object_space(index)) {
       const vm::SurfacePlace found = vm::evaluate_place(scene.surface, place, workspace);
-      place = found.place + (found.surface < scene.surfaces.size() ? scene.surfaces[found.surface].shift : glm::dvec3(0));
+      place =
+          found.place + (found.surface < scene.surfaces.size() ? scene.surfaces[found.surface].shift : glm::dvec3(0));
     }
     sum += glm::dvec3(albedo_of(materials.at(index, points[i], place, workspace)));
   }
@@ -47,7 +48,8 @@ glm::dvec3 mean_color(const compiler::CompiledScene& scene, const Materials& mat
 std::array<std::uint8_t, 3> color_bytes(const MeshMaterial& material) {
   std::array<std::uint8_t, 3> bytes{};
   for (int i = 0; i < 3; ++i) {
-    bytes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(compiler::srgb_encode(material.color[i]) * 255 + 0.5);
+    bytes[static_cast<std::size_t>(i)] =
+        static_cast<std::uint8_t>(compiler::srgb_encode(material.color[i]) * 255 + 0.5);
   }
   return bytes;
 }

@@ -5,8 +5,8 @@
 #include <iterator>
 
 #include "compiler/scene/srgb.h"
-#include "runtime/mesh/mesh_bytes.h"
-#include "runtime/mesh/mesh_file.h"
+#include "runtime/mesh/files/mesh_bytes.h"
+#include "runtime/mesh/files/mesh_file.h"
 
 namespace fathom::runtime {
 namespace {

@@ -1,5 +1,5 @@
 // Materials as mesh formats know them: one colour and a few numbers, without textures.
-// Tested by: tests/runtime/mesh/mesh_file_test.cpp
+// Tested by: tests/runtime/mesh/files/mesh_file_test.cpp
 #pragma once
 
 #include <array>
