@@ -21,7 +21,7 @@ class CellOctree {
     field_.evaluate(centres_, MeshField::Values::Radius, radii_, threads_);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const float error = field_.error(centres_[i], radii_[i]);
+      const float error = field_.error(centres_[i], radii_[i]) * std::max(1.0f, field_.field().inv_lipschitz);
       // NaN proves nothing.
       if (!(std::abs(radii_[i]) > halves_[i] + error)) nodes[kept++] = nodes[i];
     }
