@@ -16,6 +16,11 @@ struct fathom_scene {
 struct fathom_image {
   fathom::Image image;
 };
+// What fathom_make_mesh() returns is the first member of this.
+struct OwnedMesh {
+  fathom_mesh view;
+  fathom::Mesh mesh;
+};
 struct fathom_diagnostics {
   std::vector<fathom::Diagnostic> all;
 };
@@ -107,6 +112,17 @@ fathom::RenderOptions to_options(const fathom_render_options* options, std::stop
       if (options->progress(fraction, options->user) != 0) stop.request_stop();
     };
   }
+  return out;
+}
+
+fathom::MeshOptions to_options(const fathom_mesh_options* options) {
+  fathom::MeshOptions out;
+  if (options == nullptr) return out;
+  if (options->tolerance != 0) out.tolerance = options->tolerance;
+  if (options->resolution != 0) out.resolution = options->resolution;
+  if (const double* box = options->box) out.box = {{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+  out.simplify = options->keep_triangles == 0;
+  out.threads = options->threads;
   return out;
 }
 
@@ -282,3 +298,27 @@ int fathom_image_write(const fathom_image* image, const char* path, fathom_error
 }
 
 void fathom_image_free(fathom_image* image) { delete image; }
+
+int fathom_make_mesh(const fathom_scene* scene, const fathom_mesh_options* options, const fathom_mesh** mesh,
+                     fathom_error* error) {
+  if (mesh != nullptr) *mesh = nullptr;
+  return call(error, [&]() -> Error {
+    if (scene == nullptr || mesh == nullptr) return null_argument();
+    fathom::Meshed made = scene->scene.mesh(to_options(options));
+    if (made.error) return made.error;
+    auto owned = std::make_unique<OwnedMesh>();
+    owned->mesh = std::move(made.mesh);
+    const fathom::Mesh& all = owned->mesh;
+    owned->view = {all.vertices.size(),
+                   all.triangles.size(),
+                   &all.vertices.data()->x,
+                   all.triangles.data()->data(),
+                   all.objects.data(),
+                   all.bound,
+                   all.proved};
+    *mesh = &owned.release()->view;
+    return {};
+  });
+}
+
+void fathom_mesh_free(const fathom_mesh* mesh) { delete reinterpret_cast<const OwnedMesh*>(mesh); }

@@ -32,6 +32,14 @@ class Hits(NamedTuple):
     object: npt.NDArray[np.uint32]
     inside: npt.NDArray[np.bool_]
 
+class Mesh(NamedTuple):
+    vertices: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.uint32]
+    object: npt.NDArray[np.uint32]
+    bound: float
+    proved: bool
+    lost: list[tuple[tuple[float, float, float], float, int, bool]]
+
 class Image:
     width: int
     height: int
@@ -58,6 +66,15 @@ class Scene:
     def nearest(self, points: npt.ArrayLike) -> npt.NDArray[np.uint32]: ...
     def range(self, lo: npt.ArrayLike, hi: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
     def march(self, origins: npt.ArrayLike, directions: npt.ArrayLike, t_max: float | None = None) -> Hits: ...
+    def mesh(
+        self,
+        *,
+        tolerance: float | None = None,
+        resolution: int = 256,
+        box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
+        simplify: bool = True,
+        threads: int = 0,
+    ) -> Mesh: ...
     def render(
         self,
         *,

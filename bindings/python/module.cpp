@@ -7,6 +7,7 @@
 
 #include <fathom/fathom.hpp>
 
+#include "bindings/python/mesh.h"
 #include "bindings/python/points.h"
 #include "bindings/python/render.h"
 #include "bindings/python/throw_error.h"
@@ -112,6 +113,10 @@ void bind_scene(py::module_& module) {
            "Renders the scene to an Image. Sizes in pixels and samples per pixel are the scene's unless given.\n"
            "progress(fraction) is called about 20 times a second; if it returns False, the image keeps the samples\n"
            "taken so far. time_limit is in seconds. Ctrl-C ends the render.")
+      .def("mesh", &mesh, py::kw_only(), py::arg("tolerance") = py::none(), py::arg("resolution") = 256,
+           py::arg("box") = py::none(), py::arg("simplify") = true, py::arg("threads") = 0,
+           "Meshes the surface. Returns Mesh: a closed manifold of triangles, within `tolerance` of the surface or\n"
+           "with `resolution` cells along the longest side. box = (lo, hi) cuts the solid off.")
       .def_readonly("objects", &SceneObject::objects, "names of the objects")
       .def_readonly("warnings", &SceneObject::warnings, "what the compiler warned about")
       .def_property_readonly("parameters", &parameters_of, "values of the scene's parameters by name")
@@ -136,6 +141,7 @@ PYBIND11_MODULE(fathom, module) {
   bind_diagnostics(module);
   bind_scene(module);
   bind_render(module);
+  bind_mesh(module);
   module.def(
       "compile", &compile_text, py::arg("text"), py::arg("parameters") = py::none(), py::kw_only(),
       py::arg("name") = "scene", py::arg("folder") = "",

@@ -104,6 +104,27 @@ class Scenes(unittest.TestCase):
             np.testing.assert_array_equal(result, expected)
 
 
+class Meshes(unittest.TestCase):
+    def test_the_mesh_of_a_ball_is_closed_and_near(self):
+        mesh = fathom.compile(BALL).mesh(tolerance=0.02)
+        self.assertTrue(mesh.proved)
+        self.assertLessEqual(mesh.bound, 0.02)
+        edges = np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
+        self.assertEqual({tuple(e) for e in edges.tolist()}, {tuple(e) for e in edges[:, ::-1].tolist()})
+        self.assertLess(np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max(), mesh.bound)
+        a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
+        volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+        self.assertAlmostEqual(volume, 4 / 3 * math.pi, delta=0.2)
+        self.assertEqual(mesh.lost, [])
+
+    def test_a_scene_without_end_needs_a_box(self):
+        scene = fathom.compile('fathom 1\nobject "ground" plane([0, 1, 0])\n')
+        with self.assertRaisesRegex(ValueError, "box"):
+            scene.mesh()
+        mesh = scene.mesh(box=((-1, -1, -1), (1, 1, 1)), resolution=16)
+        np.testing.assert_allclose(mesh.vertices.max(axis=0), [1, 0, 1], atol=mesh.bound)
+
+
 class Renders(unittest.TestCase):
     def test_layers_show_the_ball(self):
         image = fathom.compile(ENDLESS).render(width=33, height=21, samples=4)

@@ -16,8 +16,9 @@
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/mesh/make_mesh.h"
 #include "runtime/mesh/files/mesh_file.h"
+#include "runtime/mesh/make_mesh.h"
+#include "runtime/mesh/mesh_box.h"
 #include "vm/encoding/escape.h"
 
 namespace fathom::cli {
@@ -30,10 +31,6 @@ constexpr const char* kMeshExamples =
     "\n"
     "The tolerance is the max distance of the mesh from the surface. Parts of the scene that are thinner than the\n"
     "tolerance may be lost, and are then named.";
-
-// Cells along the longest side, unless --tolerance or --resolution says otherwise.
-constexpr double kDefaultResolution = 256;
-constexpr double kMostResolution = 1 << 18;
 
 struct MeshRequest {
   SceneArguments scene;
@@ -74,7 +71,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                    "Max distance of the mesh from the surface, in scene units (as --resolution 256)",
                    into(read_positive, request.tolerance));
   arguments.option("--resolution", "N", "Cells along the longest side, instead of --tolerance",
-                   whole(request.resolution, 4, static_cast<int>(kMostResolution)));
+                   whole(request.resolution, runtime::kMinResolution, runtime::kMaxResolution));
   arguments.option("--box", "X0,...,Z1", "Box, from x0,y0,z0 to x1,y1,z1, at which the solid is cut off",
                    into(read_box, request.box));
   arguments.option("--unit", "UNIT", "Length of a scene unit: mm, cm, m or in (3mf: mm, glb: m; others have no unit)",
@@ -102,27 +99,16 @@ std::string box_text(const compiler::Box& b) {
   return fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
 }
 
-// The box of the mesh in the programs' coordinates.
-struct MeshBox {
-  compiler::Box box;
-  bool is_clipped;
-};
-
-std::variant<MeshBox, ExitCode> choose_box(const MeshRequest& request, const compiler::CompiledScene& scene,
-                                           const Streams& streams) {
-  MeshBox chosen{scene.bound, false};
-  if (request.box) {
-    const compiler::Box wanted{request.box->lo - scene.origin, request.box->hi - scene.origin};
-    chosen.box = intersect(wanted, scene.bound);
-    const compiler::Box outside = unite(wanted, scene.bound);
-    chosen.is_clipped = outside.lo != wanted.lo || outside.hi != wanted.hi;
-  }
-  const glm::dvec3 size = chosen.box.hi - chosen.box.lo;
-  if (chosen.box.empty() || (chosen.box.finite() && !(std::min({size.x, size.y, size.z}) > 0))) {
+std::variant<runtime::MeshBox, ExitCode> choose_box(const MeshRequest& request, const compiler::CompiledScene& scene,
+                                                    const Streams& streams) {
+  std::optional<compiler::Box> wanted;
+  if (request.box) wanted = compiler::Box{request.box->lo - scene.origin, request.box->hi - scene.origin};
+  const auto chosen = runtime::mesh_box(scene, wanted);
+  if (const auto* box = std::get_if<runtime::MeshBox>(&chosen)) return *box;
+  if (std::get<runtime::NoMeshBox>(chosen) == runtime::NoMeshBox::Empty) {
     return fail_about(request.scene, kBadScene,
                       request.box ? "nothing of the scene is in the box" : "the scene is empty", {}, streams);
   }
-  if (chosen.box.finite()) return chosen;
   Help help = {"--box X0,Y0,Z0,X1,Y1,Z1 cuts the scene off at a box"};
   const compiler::Box contents = scene.contents.moved(scene.origin);
   if (!contents.empty() && contents.finite()) help.push_back("its bounded parts are in --box " + box_text(contents));
@@ -230,14 +216,11 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
   const auto chosen = choose_box(request, scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&chosen)) return *code;
-  const auto& [box, is_clipped] = std::get<MeshBox>(chosen);
+  const auto& box = std::get<runtime::MeshBox>(chosen);
 
   const auto start = std::chrono::steady_clock::now();
-  runtime::MeshOptions options;
-  const double resolution = request.resolution ? *request.resolution : kDefaultResolution;
-  options.tolerance = request.tolerance.value_or(runtime::tolerance_of(box, resolution));
-  options.deviation = request.tolerance ? options.tolerance : runtime::fine_deviation(options.tolerance);
-  options.is_clipped = is_clipped;
+  runtime::MeshOptions options =
+      runtime::mesh_options(box, request.tolerance, request.resolution.value_or(runtime::kDefaultResolution));
   options.simplifies = !request.plain;
   options.memory = allowed_memory(request.scene.limits);
   options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
@@ -248,7 +231,7 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
       note(streams, fmt::format("{:.2f} s before: {}", std::chrono::duration<double>(now - last).count(), step));
     last = now;
   };
-  runtime::MeshResult result = runtime::make_mesh(scene, box, options);
+  runtime::MeshResult result = runtime::make_mesh(scene, box.box, options);
   warn_of_lost_parts(scene, result, streams);
   if (result.end != runtime::MeshResult::End::Done) return fail_to_mesh(request, result, options.memory, streams);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;

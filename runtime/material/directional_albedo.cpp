@@ -31,7 +31,7 @@ Stencil stencil_at(float place) {
   return {first, {b * c * d / -6, a * c * d / 2, a * b * d / -2, a * b * c / 6}};
 }
 
-float place_of(float cos) { return std::sqrt(std::sqrt(cos)) * (kNodes - 1); }
+float node_place(float cos) { return std::sqrt(std::sqrt(cos)) * (kNodes - 1); }
 
 // Returns the weight of each node in the average: int w(x) 8 x^7 dx, x = cos^(1/4).
 std::array<float, kNodes> average_weights() {
@@ -76,7 +76,7 @@ class AlbedoTable {
 // Adds `share` times the row at alpha, interpolated between the rows that `row_at(node)` gives.
 template <typename RowAt>
 void add_rows(float alpha, float share, DirectionalAlbedo& sum, RowAt&& row_at) {
-  const Stencil s = stencil_at(place_of(alpha));
+  const Stencil s = stencil_at(node_place(alpha));
   for (int k = 0; k < 4; ++k) {
     const DirectionalAlbedo& row = row_at(s.first + k);
     const float weight = share * s.weight[static_cast<std::size_t>(k)];
@@ -177,7 +177,7 @@ void add_lowered(std::size_t o, float alpha, DirectionalAlbedo& row, Share&& sha
     const float cos_m = std::min(glm::dot(wo, m), 1.0f), cos_i = 2 * cos_m * m.z - wo.z;
     if (!(cos_i > 0 && cos_i < cos)) return;
     const float part = weight * share(cos_m) * ggx.g2_over_g1(cos, cos_i);
-    const Stencil s = stencil_at(place_of(cos_i));
+    const Stencil s = stencil_at(node_place(cos_i));
     for (std::size_t k = 0; k < 4; ++k) row.node[static_cast<std::size_t>(s.first) + k] += part * s.weight[k];
     row.node[o] -= part;
   });
@@ -233,7 +233,7 @@ thread_local CoatLosses coat_losses;
 }  // namespace
 
 float DirectionalAlbedo::at(float cos) const {
-  const Stencil s = stencil_at(place_of(cos));
+  const Stencil s = stencil_at(node_place(cos));
   float sum = 0;
   for (std::size_t k = 0; k < 4; ++k) sum += s.weight[k] * node[static_cast<std::size_t>(s.first) + k];
   return std::clamp(sum, 0.0f, 1.0f);

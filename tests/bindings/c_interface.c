@@ -93,6 +93,22 @@ static int check_render(const fathom_scene* scene) {
   return 0;
 }
 
+static int check_mesh(const fathom_scene* scene) {
+  fathom_mesh_options options;
+  const fathom_mesh* mesh = NULL;
+  fathom_error error;
+  memset(&options, 0, sizeof options);
+  options.tolerance = 0.1;
+  CHECK(fathom_make_mesh(scene, &options, &mesh, NULL) == FATHOM_OK);
+  CHECK(mesh->triangle_count == 2 * mesh->vertex_count - 4 && mesh->proved && mesh->bound <= 0.1);
+  CHECK(fabs(mesh->vertices[0]) <= 2.1 && mesh->triangles[0] < mesh->vertex_count && mesh->objects[0] == 0);
+  fathom_mesh_free(mesh);
+  options.tolerance = -1;
+  CHECK(fathom_make_mesh(scene, &options, &mesh, &error) == FATHOM_BAD_ARGUMENT && mesh == NULL);
+  fathom_mesh_free(NULL);
+  return 0;
+}
+
 int check_c_interface(void) {
   static const char kBall[] = "fathom 1\nparam r = 1\nobject \"ball\" sphere(r)\nbackground [1, 1, 1]\n";
   static const fathom_definition kRadius = {"r", 2};
@@ -107,6 +123,7 @@ int check_c_interface(void) {
   line = check_errors();
   if (line == 0) line = check_values(scene);
   if (line == 0) line = check_render(scene);
+  if (line == 0) line = check_mesh(scene);
   fathom_scene_free(scene);
   return line;
 }

@@ -150,6 +150,29 @@ FATHOM_API int fathom_image_objects(const fathom_image* image, uint32_t* out, fa
 FATHOM_API int fathom_image_write(const fathom_image* image, const char* path, fathom_error* error);
 FATHOM_API void fathom_image_free(fathom_image* image);
 
+/* ---- mesh ---- */
+
+typedef struct fathom_mesh_options {
+  double tolerance;   /* max distance of the mesh from the surface; 0: `resolution` decides */
+  int resolution;     /* cells along the longest side; 0: 256 */
+  const double* box;  /* x0, y0, z0, x1, y1, z1, at which the solid is cut off; NULL: no box */
+  int keep_triangles; /* 1: triangles are not merged */
+  int threads;        /* 0: one per processor */
+} fathom_mesh_options;
+
+/* A closed manifold mesh. All arrays belong to the mesh. */
+typedef struct fathom_mesh {
+  size_t vertex_count, triangle_count;
+  const double* vertices;    /* [vertex][3], scene units */
+  const uint32_t* triangles; /* [triangle][3], counter-clockwise seen from outside */
+  const uint32_t* objects;   /* [triangle] */
+  double bound;              /* every point of the mesh is within this distance of the surface */
+  int proved;                /* 0: the bound is an estimate */
+} fathom_mesh;
+FATHOM_API int fathom_make_mesh(const fathom_scene* scene, const fathom_mesh_options* options,
+                                const fathom_mesh** mesh, fathom_error* error);
+FATHOM_API void fathom_mesh_free(const fathom_mesh* mesh);
+
 #ifdef __cplusplus
 }
 #endif

@@ -14,6 +14,7 @@
 
 #include <fathom/export.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -185,6 +186,38 @@ struct Rendered {
   Error error;
 };
 
+struct MeshOptions {
+  // Max distance of the mesh from the surface, scene units. Without it, `resolution` decides.
+  std::optional<double> tolerance = {};
+  int resolution = 256;         // cells along the longest side
+  std::optional<Box> box = {};  // cuts the solid off, with flat faces; a scene without end needs it
+  bool simplify = true;         // merges triangles where the tolerance allows it
+  int threads = 0;              // 0: one per processor; never changes the mesh
+};
+
+// A part of the scene, or a gap, that is too thin for the cells of a mesh.
+struct LostPart {
+  Vec3d place;
+  double thickness;      // a tolerance of this size keeps the part
+  std::uint32_t object;  // index into Scene::objects()
+  bool gap;
+};
+
+// A closed manifold mesh of triangles.
+struct Mesh {
+  std::vector<Vec3d> vertices;                          // scene units
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<std::uint32_t> objects;                   // [triangle] index into Scene::objects()
+  double bound = 0;                                     // every point of the mesh is within `bound` of the surface
+  bool proved = false;  // false: the field's float error, and so `bound`, is an estimate
+  std::vector<LostPart> lost;
+};
+
+struct Meshed {
+  Mesh mesh;
+  Error error;
+};
+
 // A compiled scene. Copies share the scene.
 class FATHOM_API Scene {
  public:
@@ -210,6 +243,9 @@ class FATHOM_API Scene {
   Error march(std::span<const Ray> rays, std::span<Hit> out) const noexcept;
 
   Rendered render(const RenderOptions& options = {}) const noexcept;
+
+  // Meshes the surface by dual contouring (Schaefer, Ju, Warren, "Manifold Dual Contouring", 2007).
+  Meshed mesh(const MeshOptions& options = {}) const noexcept;
 
   // Box outside which there is no surface.
   Box bounds() const noexcept;
