@@ -29,16 +29,20 @@ std::size_t longest_edge(const DistanceProof::Corners& p) {
 DistanceProof::DistanceProof(const MeshField& field)
     : field_(field), scratch_(std::make_unique<MeshField::Scratch>()) {}
 
-// Returns the smallest disc around a triangle.
+// Returns a disc around a triangle, the smallest one moved a little into the triangle. The middle of an edge may lie
+// on a crease of the surface, where the normal leads along the crease's other side.
 DistanceProof::Disc DistanceProof::disc_around(const Corners& p) {
+  constexpr double kInward = 0.15;
   const std::size_t longest = longest_edge(p);
   const glm::dvec3 a = p[longest], u = p[(longest + 1) % 3] - a, v = p[(longest + 2) % 3] - a;
   const glm::dvec3 last = v - u;
   const double uu = glm::dot(u, u), vv = glm::dot(v, v);
-  if (vv + glm::dot(last, last) <= uu * (1 + 1e-9)) return {a + 0.5 * u, 0.5 * std::sqrt(uu)};
-  // The circumscribed circle of an acute triangle.
-  const glm::dvec3 n = glm::cross(u, v);
-  const glm::dvec3 to = (glm::cross(n, u) * vv + glm::cross(v, n) * uu) / (2 * glm::dot(n, n));
+  glm::dvec3 to = 0.5 * u;
+  if (vv + glm::dot(last, last) > uu * (1 + 1e-9)) {  // an acute triangle: the centre of its circumscribed circle
+    const glm::dvec3 n = glm::cross(u, v);
+    to = (glm::cross(n, u) * vv + glm::cross(v, n) * uu) / (2 * glm::dot(n, n));
+  }
+  to += kInward * ((u + v) / 3.0 - to);
   return {a + to, std::sqrt(std::max({glm::dot(to, to), glm::dot(to - u, to - u), glm::dot(to - v, to - v)}))};
 }
 

@@ -104,7 +104,7 @@ class LostPartSearch {
       // The other side further than a cell away is a part of another cell.
       if (first < 0 || depth(first) > 1 || is_near_crossed(signs_, searches_[s].cell, kReach)) continue;
       lost.push_back(s);
-      thickness.push_back((last + 1 < kAllDepths ? depth(last + 1) : depth(last)) * lattice_.cell);
+      thickness.push_back(depth(last) * lattice_.cell);
       places.push_back(searches_[s].point + depth(first) * lattice_.cell * searches_[s].towards);
     }
     field_.find_surfaces(places, surfaces_, threads_);

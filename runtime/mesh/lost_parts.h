@@ -18,7 +18,7 @@ struct LostPart {
   std::uint32_t surface;  // index into CompiledScene::surfaces
   bool is_gap;            // empty space within the solid, and not a part of the solid
   glm::dvec3 place;       // the thinnest place that was found, programs' coordinates
-  double thickness;       // there, scene units, within a sixteenth of a cell; at most two cells
+  double thickness;       // there at least, scene units; at most two cells
   std::size_t cells;      // number of cells with lost parts
 };
 

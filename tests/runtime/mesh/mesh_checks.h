@@ -82,7 +82,7 @@ inline runtime::MeshResult meshed(const compiler::CompiledScene& scene, double r
   options.tolerance = runtime::tolerance_of(scene.bound, resolution);
   options.deviation = runtime::fine_deviation(options.tolerance);
   options.simplifies = simplifies;
-  options.memory = 1e9;
+  options.memory = 8e9;
   options.threads = threads;
   return runtime::make_mesh(scene, scene.bound, options);
 }
