@@ -91,12 +91,16 @@ void DistanceProof::sample(const Round& round) {
   discs_.clear();
 }
 
-// Replaces the normals of the pieces by the field's gradients in their middles.
-void DistanceProof::turn_to_gradients() {
+// Replaces the normals of the pieces by the field's gradients in their middles, plus `share` of the normals.
+void DistanceProof::turn_to_gradients(double share) {
   samples_.clear();
   for (const Piece& piece : pieces_) samples_.push_back(disc_around(piece.corners).centre);
   field_.find_surfaces(samples_, gradients_, 1);
-  for (std::size_t i = 0; i < pieces_.size(); ++i) pieces_[i].normal = gradients_[i].normal;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const glm::dvec3 direction = gradients_[i].normal + share * pieces_[i].normal;
+    const double length = glm::length(direction);
+    pieces_[i].normal = length > 0 ? direction / length : pieces_[i].normal;
+  }
 }
 
 bool DistanceProof::holds(double distance, double deviation, bool any_direction) {
@@ -114,7 +118,12 @@ bool DistanceProof::holds(double distance, double deviation, bool any_direction)
     std::swap(pieces_, open_);
     if (any_direction) {
       const std::vector<Piece> kept = pieces_;
-      turn_to_gradients();
+      turn_to_gradients(0);
+      try_pieces(round);
+      if (open_.empty()) return true;
+      // Beyond a crease one of the two directions runs along the surface. Their sum crosses it.
+      pieces_ = kept;
+      turn_to_gradients(1);
       try_pieces(round);
       if (open_.empty()) return true;
       pieces_ = kept;

@@ -35,7 +35,7 @@ class DistanceProof {
   // `deviation`, scene units.
   bool holds(double distance, double deviation) { return holds(distance, deviation, false); }
   // True if every point of all added triangles is proved within `distance` of the surface. Triangles may face any
-  // way: where the normal does not lead across the surface, the gradient is tried.
+  // way: where the normal does not lead across the surface, the gradient is tried, and the sum of both.
   bool is_near(double distance) { return holds(distance, distance, true); }
 
  private:
@@ -56,7 +56,7 @@ class DistanceProof {
   bool holds(double distance, double deviation, bool any_direction);
   void try_pieces(const Round& round);
   void sample(const Round& round);
-  void turn_to_gradients();
+  void turn_to_gradients(double share);
   static Disc disc_around(const Corners& corners);
 
   const MeshField& field_;
