@@ -2,7 +2,8 @@
 // cones, fat and thin rings, balls of nearly equal reach, blends of width 0, squashed spaces).
 //
 // Parameters of shapes are exact in float, so that a float evaluator is judged on the same solid. A seed gives the
-// same scene on every platform, because no distribution of the standard library is used.
+// same scene with every standard library, because none of its distributions is used, but not with every compiler:
+// parameters and children of a node are drawn as arguments of one call.
 #pragma once
 
 #include <cstdint>
