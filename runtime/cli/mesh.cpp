@@ -96,7 +96,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
 // Formats a place of the scene.
 std::string place_text(glm::dvec3 p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z); }
 std::string box_text(const compiler::Box& b) {
-  return fmt::format("{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g}", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
+  return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
 }
 
 std::variant<runtime::MeshBox, ExitCode> choose_box(const MeshRequest& request, const compiler::CompiledScene& scene,
