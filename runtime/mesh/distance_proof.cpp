@@ -91,16 +91,35 @@ void DistanceProof::sample(const Round& round) {
   discs_.clear();
 }
 
-// Replaces the normals of the pieces by the field's gradients in their middles, plus `share` of the normals.
-void DistanceProof::turn_to_gradients(double share) {
+// Replaces the normals of the pieces by `share` of the normals plus the field's gradients in their middles, moved by
+// `shift` along the normals.
+void DistanceProof::turn_to_gradients(double share, double shift) {
   samples_.clear();
-  for (const Piece& piece : pieces_) samples_.push_back(disc_around(piece.corners).centre);
+  for (const Piece& piece : pieces_) samples_.push_back(disc_around(piece.corners).centre + shift * piece.normal);
   field_.find_surfaces(samples_, gradients_, 1);
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const glm::dvec3 direction = gradients_[i].normal + share * pieces_[i].normal;
     const double length = glm::length(direction);
     pieces_[i].normal = length > 0 ? direction / length : pieces_[i].normal;
   }
+}
+
+// Tries other directions than the normal for the pieces.
+void DistanceProof::try_gradients(const Round& round) {
+  // Beyond a crease the normal, or the gradient, may run along the surface. Their sum crosses it. Shifts are shares
+  // of the distance.
+  struct Turn {
+    double share, shift;
+  };
+  constexpr Turn kTurns[] = {{0, 0}, {1, 0}, {1, -0.5}, {1, 0.5}};
+  const std::vector<Piece> kept = pieces_;
+  for (const Turn& turn : kTurns) {
+    pieces_ = kept;
+    turn_to_gradients(turn.share, turn.shift * round.distance);
+    try_pieces(round);
+    if (open_.empty()) return;
+  }
+  pieces_ = kept;
 }
 
 bool DistanceProof::holds(double distance, double deviation, bool any_direction) {
@@ -117,16 +136,8 @@ bool DistanceProof::holds(double distance, double deviation, bool any_direction)
     if (open_.empty()) return true;
     std::swap(pieces_, open_);
     if (any_direction) {
-      const std::vector<Piece> kept = pieces_;
-      turn_to_gradients(0);
-      try_pieces(round);
+      try_gradients(round);
       if (open_.empty()) return true;
-      // Beyond a crease one of the two directions runs along the surface. Their sum crosses it.
-      pieces_ = kept;
-      turn_to_gradients(1);
-      try_pieces(round);
-      if (open_.empty()) return true;
-      pieces_ = kept;
     }
     if ((1 - share) * distance >= deviation) return false;  // smaller discs would move the samples no further
   }

@@ -56,7 +56,8 @@ class DistanceProof {
   bool holds(double distance, double deviation, bool any_direction);
   void try_pieces(const Round& round);
   void sample(const Round& round);
-  void turn_to_gradients(double share);
+  void turn_to_gradients(double share, double shift);
+  void try_gradients(const Round& round);
   static Disc disc_around(const Corners& corners);
 
   const MeshField& field_;

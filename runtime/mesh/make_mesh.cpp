@@ -17,8 +17,9 @@ namespace {
 
 // A cell's diagonal over its edge, with a margin for the rounding of its corners.
 constexpr double kDiagonal = 1.7320508 * (1 + 0x1p-10);
-// Bytes per cell that may hold the surface, measured as the process's largest size over the number of cells.
-constexpr double kBytesPerCell = 900;
+// Bytes per cell that may hold the surface. The sheet of tests/data/meshes/gyroid-box.fathom, of whose cells two
+// thirds are crossed, takes 282.
+constexpr double kBytesPerCell = 400;
 // Distances that the last proof tries, from one slightly above the deviation upwards, and the max number of samples.
 constexpr double kFirstProof = 1.2, kNextProof = 1.25;
 constexpr double kMostSamples = 24e6;
