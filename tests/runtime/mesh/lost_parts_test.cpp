@@ -20,7 +20,7 @@ std::string objects(const std::string& more) {
 
 TEST_CASE("lost parts: a thin plate is named, and measured") {
   const auto scene = test::compiled(
-      objects(R"({"name": "plate", "type": "box", "half_size": [0.4, 0.002, 0.4], "translate": [0, 0.813, 0]})"));
+      objects(R"({"name": "plate", "type": "box", "half_size": [0.4, 0.008, 0.4], "translate": [0, 0.813, 0]})"));
   const MeshResult result = meshed(scene, 40);
   REQUIRE(result.end == MeshResult::End::Done);
   CHECK(measure(result.mesh).components == 1);
@@ -28,9 +28,9 @@ TEST_CASE("lost parts: a thin plate is named, and measured") {
   CHECK(scene.surfaces[result.lost[0].surface].name == "plate");
   CHECK_FALSE(result.lost[0].is_gap);
   CHECK(result.lost[0].place.y == Approx(0.813).margin(0.003));
-  CHECK(result.lost[0].thickness < 0.1 * result.cell);
+  CHECK(result.lost[0].thickness == Approx(0.016).margin(result.cell / 16));
   CHECK(result.lost[0].cells > 100);
-  const MeshResult fine = meshed(scene, 2.4 / 0.004);
+  const MeshResult fine = meshed(scene, 2.4 / 0.016);
   CHECK(fine.lost.empty());
   CHECK(measure(fine.mesh).components == 2);
 }
