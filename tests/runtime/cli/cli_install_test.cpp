@@ -17,7 +17,7 @@ TEST_CASE("cli: cmake --install installs a program that renders an installed sce
   const Folder folder;
   const Result result = folder.run_script(R"sh(
     unset DESTDIR
-    cmake --install "$(dirname "$fathom")" --prefix "$PWD/prefix" >log || exit 3
+    cmake --install "$(dirname "$fathom")" --prefix "$PWD/prefix" --component program >log || exit 3
     mkdir elsewhere && cd elsewhere
     "$OLDPWD/prefix/bin/fathom" render ../prefix/share/fathom/scenes/primitives.json --size 16x9 -s 1 -q -o ../out.png
   )sh");
