@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fathom/fathom.hpp>
 #include <filesystem>
+#include <limits>
 #include <random>
 #include <thread>
 
@@ -196,6 +197,18 @@ TEST_CASE("errors of the library say what is wrong", "[library]") {
   const Ray ray{{0, 0, 0}, {0, 0, 0}};
   Hit hit;
   CHECK(scene.march({&ray, 1}, {&hit, 1}).kind == Error::Kind::BadArgument);
+}
+
+TEST_CASE("points that are not finite have distances that are not finite", "[library]") {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<Vec3f> points = {{nan, 0, 0}, {inf, 0, 0}, {0, -inf, 0}, {1, 1, nan}};
+  for (const std::string shape : {"sphere(1)", "box([1, 1, 1])", "plane([0, 1, 0])", "torus(1, 0.2)"}) {
+    CAPTURE(shape);
+    const Scene scene = compiled("fathom 1\nobject \"a\" " + shape + "\n");
+    std::vector<float> distance(points.size());
+    REQUIRE_FALSE(scene.distance(Points(std::span(points)), distance));
+    for (const float d : distance) CHECK_FALSE(std::isfinite(d));
+  }
 }
 
 TEST_CASE("parameters replace a scene's numbers", "[library]") {

@@ -227,8 +227,8 @@ class FATHOM_API Scene {
   explicit Scene(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
-  // Signed distances, with the bits of `fathom eval --number f32` for float and `fathom eval` for double. Points
-  // whose coordinates are not finite give NaN.
+  // Signed distances, with the bits of `fathom eval --number f32` for float and `fathom eval` for double. A
+  // point that is not finite has a distance that is not finite.
   Error distance(Points<float> points, std::span<float> out) const noexcept;
   Error distance(Points<double> points, std::span<double> out) const noexcept;
   // Gradients of the distance, not normalised.
