@@ -16,7 +16,7 @@ struct fathom_scene {
 struct fathom_image {
   fathom::Image image;
 };
-// What fathom_make_mesh() returns is the first member of this.
+// A mesh with its arrays. fathom_make_mesh() returns a pointer to the first member.
 struct OwnedMesh {
   fathom_mesh view;
   fathom::Mesh mesh;

@@ -45,7 +45,7 @@ Error for_pixels(const std::shared_ptr<const Image::Data>& data, std::size_t len
   });
 }
 
-// What an OpenEXR file says about its image, in addition to the channels.
+// Attributes of an OpenEXR file.
 runtime::Attributes attributes_of(const Image::Data& data) {
   return {
       {"fathom.version", std::string(version())},

@@ -19,9 +19,6 @@
 namespace fathom {
 namespace {
 
-// Bytes per pixel of the denoiser's work.
-constexpr double kDenoiserBytes = 128;
-
 // A scene prepared to be rendered.
 struct Picture {
   compiler::CompiledScene scene;
@@ -98,7 +95,8 @@ Error check_memory(const Picture& picture, double allowed, bool denoise) {
   const runtime::Settings settings = runtime::resolve(picture.scene, picture.options);
   const auto film =
       static_cast<double>(runtime::Film::memory_per_pixel(settings.layers, runtime::stages_of(settings)));
-  const double needed = static_cast<double>(settings.crop.pixels()) * (film + (denoise ? kDenoiserBytes : 0));
+  const double needed =
+      static_cast<double>(settings.crop.pixels()) * (film + (denoise ? runtime::kDenoiserBytes : 0));
   if (needed <= allowed) return {};
   return {Error::Kind::OutOfMemory,
           fmt::format("the render would take {:.0f} bytes of memory; {:.0f} are allowed", needed, allowed)};

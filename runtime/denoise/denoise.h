@@ -29,6 +29,9 @@ struct DenoiseInput {
   std::span<const float> depth;   // scene units; 0 for misses
 };
 
+// Memory of the denoiser's work, bytes per pixel.
+inline constexpr double kDenoiserBytes = 128;
+
 // Returns denoised radiance, [y][x][rgb]. The bits do not depend on `threads`. With Open Image Denoise they may
 // depend on the machine.
 std::vector<float> denoise(const DenoiseInput& input, int threads);

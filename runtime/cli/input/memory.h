@@ -5,6 +5,7 @@
 #include <string>
 
 #include "compiler/source/limits.h"
+#include "runtime/denoise/denoise.h"
 #include "runtime/image/image_read.h"
 #include "runtime/load/files.h"
 
@@ -14,8 +15,9 @@ using runtime::allowed_memory;
 
 runtime::ReadLimits read_limits(const compiler::Limits& limits);
 
-// Bytes per pixel: of the image being written (three floats and their encoded form), and of the denoiser's work.
-inline constexpr double kImageBytes = 24, kDenoiserBytes = 128;
+// Bytes per pixel of the image being written: three floats and their encoded form.
+inline constexpr double kImageBytes = 24;
+using runtime::kDenoiserBytes;
 
 // Formats bytes as "12 MiB".
 std::string format_bytes(double bytes);

@@ -11,7 +11,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Returns for each vertex the material of its first triangle.
+// Returns for each vertex the least material of its triangles.
 std::vector<std::uint32_t> vertex_materials(const MeshDocument& document) {
   std::vector<std::uint32_t> of(document.mesh.vertices.size(), 0xffffffff);
   for (const Triangle& triangle : document.mesh.triangles) {
@@ -101,7 +101,7 @@ std::vector<std::uint8_t> encode_obj(const MeshDocument& document, std::string_v
 std::vector<std::uint8_t> encode_mtl(const MeshDocument& document) {
   std::string text;
   for (const MeshMaterial& m : document.materials) {
-    // Exporters write sRGB signals, and Blender reads them as such.
+    // The format does not say whether Kd is linear. The sRGB signal suits readers that show Kd as it is.
     const auto bytes = color_bytes(m);
     const glm::dvec3 signal = glm::dvec3(bytes[0], bytes[1], bytes[2]) / 255.0;
     text += fmt::format("newmtl {}\nKd {}\nKe {}\nd {:.6g}\nPr {:.6g}\nPm {:.6g}\n", word_of(m.name, "default"),
