@@ -1,7 +1,6 @@
 // The order of the source folders, read from every include. A folder includes only itself and folders before it, and
 // no two units include each other.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -9,6 +8,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include "tests/support/catch.h"
 
 namespace fathom::layers_test {
 

@@ -1,5 +1,5 @@
 // The C interface, checked by a program in C99.
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 extern "C" int check_c_interface(void);
 

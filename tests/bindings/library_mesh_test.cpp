@@ -1,10 +1,11 @@
 // The C++ interface of the library: meshes.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fathom/fathom.hpp>
 #include <set>
 #include <utility>
+
+#include "tests/support/catch.h"
 
 namespace fathom::library_mesh_test {
 

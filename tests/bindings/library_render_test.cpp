@@ -1,12 +1,12 @@
 // The C++ interface of the library: renders and their images.
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <fathom/fathom.hpp>
 #include <thread>
 
 #include "runtime/image/image_read.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::library_render_test {

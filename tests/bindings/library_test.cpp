@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fathom/fathom.hpp>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::library_test {

@@ -1,6 +1,5 @@
 // The adversarial catalogue, rows I9 to I16: rays that leave bodies or start inside them, invalid rays, and solids
 // cut out of each other. docs/explanation/accuracy.md lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -8,6 +7,7 @@
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::bodies_test {

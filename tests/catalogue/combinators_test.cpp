@@ -1,12 +1,12 @@
 // The adversarial catalogue, rows F5 and F6: blends of extreme widths, shells of shells. docs/explanation/accuracy.md
 // lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/vm/number/float_bits.h"
 

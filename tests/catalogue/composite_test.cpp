@@ -1,13 +1,13 @@
 // The adversarial catalogue, row I16: a scene of many different parts, compared with closed forms.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/catch.h"
 
 namespace fathom::catalogue::composite_test {
 namespace {

@@ -1,12 +1,12 @@
 // The adversarial catalogue, row F4: repeated balls compared with the same balls in a list. Jittered copies:
 // warps_test.cpp.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "tests/catalogue/closed_forms.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/catch.h"
 
 namespace fathom::catalogue::copies_test {
 namespace {

@@ -1,6 +1,5 @@
 // The adversarial catalogue, rows F7, F13 and F14: the Mandelbulb where its formula is undefined, coordinates too
 // small for normal floats, and NaNs. docs/explanation/accuracy.md lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -9,6 +8,7 @@
 #include "runtime/render.h"
 #include "tests/catalogue/naive.h"
 #include "tests/catalogue/solids.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/vm/number/float_bits.h"

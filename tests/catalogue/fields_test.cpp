@@ -2,7 +2,6 @@
 // and of parameters for which formulas divide by zero. All primitives against brute force, and all Lipschitz
 // constants against random graphs: tests/compiler/shapes/shapes_test.cpp. docs/explanation/accuracy.md lists all
 // rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "tests/catalogue/naive.h"
 #include "tests/catalogue/solids.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 

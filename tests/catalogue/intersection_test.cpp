@@ -2,12 +2,12 @@
 // hit or give up after a number of steps. The truth is a closed form in long double for exactly the rays that are
 // marched. Naive sphere tracing runs in addition if its result shows why the row exists. docs/explanation/accuracy.md
 // lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/march/certify.h"
 #include "tests/catalogue/naive.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::intersection_test {

@@ -1,7 +1,6 @@
 // The adversarial catalogue, rows N1 to N5: normals compared with exact gradients in long double. Differences and a
 // cone's usual formula are measured for comparison. Random shapes and graphs: tests/compiler/shapes/normals_test.cpp.
 // docs/explanation/accuracy.md lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
 #include "tests/catalogue/solids.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::catalogue::normals_test {

@@ -1,6 +1,5 @@
 // The adversarial catalogue, rows S1 to S4: shadow acne, leaks, contact shadows, grooves. Rays that start on a
 // surface and whole images are compared with closed forms. docs/explanation/accuracy.md lists all rows.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 #include "tests/catalogue/departures.h"
 #include "tests/catalogue/naive.h"
 #include "tests/runtime/estimate.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::catalogue::shadows_test {

@@ -4,7 +4,6 @@
 // Sphere tracing with the raw value as the step, as in most programs, is wrong for the fraction of rays that the
 // heavy test prints. The compiled scenes must be right for every ray.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "runtime/march/march.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random/random_scene.h"
 

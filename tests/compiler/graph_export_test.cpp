@@ -1,11 +1,11 @@
 #include "compiler/graph_export.h"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "compiler/compile.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 
 namespace fathom::graph_export_test {
 

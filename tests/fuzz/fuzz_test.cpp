@@ -1,10 +1,10 @@
 // Runs every fuzz target on its seeds and on the inputs that once broke it (tests/fuzz/found/NAME). `scripts/fuzz`
 // continues from the same inputs.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "tests/fuzz/target.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::fuzz::fuzz_test {

@@ -6,12 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 

@@ -1,10 +1,10 @@
 // Images of scenes that move while the shutter is open.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "runtime/render.h"
 #include "runtime/sampling/shutter.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::motion_blur_test {

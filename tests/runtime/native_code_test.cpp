@@ -1,9 +1,9 @@
 // Pictures do not depend on machine code.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runtime/field/field.h"
 #include "runtime/render.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "vm/native/native_program.h"
 

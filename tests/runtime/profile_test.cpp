@@ -1,6 +1,5 @@
 // The profile of a render: its numbers add up, and profiling changes no bit of the image.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/scaled_cases.h"
 #include "vm/interpret/evaluate.h"

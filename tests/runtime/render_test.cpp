@@ -3,7 +3,6 @@
 
 #include <array>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,6 +14,7 @@
 #include "runtime/film/film_channels.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::render_test {
 namespace {

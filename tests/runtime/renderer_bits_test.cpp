@@ -2,12 +2,12 @@
 // to another render.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <map>
 #include <sstream>
 
 #include "runtime/film/film_file.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 

@@ -8,13 +8,13 @@
 // or refuses the scene with an error.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "compiler/shapes/node_table.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 #include "tests/support/random/random_scene.h"

@@ -1,6 +1,5 @@
 #include "runtime/units.h"
-
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::units_test {
 namespace {

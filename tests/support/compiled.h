@@ -1,12 +1,12 @@
 // Compiles scene texts for tests. The test fails when the compiler reports an error.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <utility>
 
 #include "compiler/compile.h"
 #include "compiler/frontend/formats/write_json.h"
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

@@ -1,10 +1,11 @@
 #include "tests/support/golden.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

@@ -2,13 +2,14 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

@@ -1,13 +1,13 @@
 // Runs the program under test in a temporary folder that contains two small scenes.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <utility>
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::test {

@@ -1,11 +1,12 @@
 // Empty temporary folder. The destructor removes the folder and its content.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <string>
+
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

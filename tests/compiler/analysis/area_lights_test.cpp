@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::compiler::lamps_test {

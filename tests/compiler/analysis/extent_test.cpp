@@ -1,8 +1,7 @@
 // Tests of a scene's extent: the box of its bounded parts.
 #include "compiler/analysis/extent.h"
 
-#include <catch2/catch.hpp>
-
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::extent_test {

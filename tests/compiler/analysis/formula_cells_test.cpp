@@ -1,8 +1,8 @@
 #include "compiler/analysis/formula_cells.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::compiler::formula_cells_test {

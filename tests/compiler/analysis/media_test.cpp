@@ -1,7 +1,7 @@
 // Interiors of transparent bodies, as the compiler finds them.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "vm/interpret/evaluate.h"
 

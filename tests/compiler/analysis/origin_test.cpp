@@ -3,7 +3,6 @@
 #include "compiler/analysis/origin.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -13,6 +12,7 @@
 #include "compiler/passes/passes.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"

@@ -1,11 +1,11 @@
 #include "compiler/analysis/probe.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "compiler/derive/formula_field.h"
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/make_node.h"
+#include "tests/support/catch.h"
 
 namespace fathom::probe_test {
 

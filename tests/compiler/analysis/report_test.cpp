@@ -1,10 +1,10 @@
 // Tests of the exactness report and the lints, in addition to their golden files.
 #include "compiler/analysis/report.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "compiler/compile.h"
+#include "tests/support/catch.h"
 
 namespace fathom::report_test {
 

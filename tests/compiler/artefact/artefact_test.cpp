@@ -1,7 +1,6 @@
 // Compiled scenes as bytes and as text: both forms read back as the same scene. The reader refuses every wrong part
 // of a file and names its position, and whatever the reader accepts is valid.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 #include <variant>
@@ -11,6 +10,7 @@
 #include "compiler/artefact/fields.h"
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/programs.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/draw_small.h"
 #include "tests/support/golden.h"
@@ -27,7 +27,7 @@ using compiler::CompiledScene;
 using compiler::FileContents;
 using compiler::FileError;
 using Bytes = std::vector<std::uint8_t>;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 // Scene that puts at least one entry into every table of a file.
 constexpr const char* kEverything = R"scene({

@@ -2,7 +2,6 @@
 // FATHOM_UPDATE_GOLDEN=1 in the environment rewrites both parts of the document.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 #include <string>
@@ -20,6 +19,7 @@ using namespace fathom::compiler;
 
 constexpr const char* kMeanings[] = {
 #define OP(Name, mnemonic, form, immediates, choice, cost, facts, meaning) #meaning,
+#include "tests/support/catch.h"
 #include "vm/program/opcodes.def"
 #undef OP
 };

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
 
 #include "compiler/derive/formula_bound.h"
 #include "compiler/frontend/read_scene.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/random/random_scene.h"

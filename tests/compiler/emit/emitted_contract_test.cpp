@@ -1,11 +1,11 @@
 // A lane type with exactly the operations that the head of emitted C++ requires.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
 #include "hi.h"
 #include "scene_c.h"
 #include "showcase.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"
 

@@ -1,7 +1,6 @@
 // Compiles the output of `fathom emit cpp` with these tests and compares it bit for bit with the machine, in float
 // and in double.
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -18,6 +17,7 @@
 #include "scene_c.h"
 #include "scene_e.h"
 #include "showcase.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
 #include "tests/support/random/random_scene.h"

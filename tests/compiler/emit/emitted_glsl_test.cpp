@@ -2,7 +2,6 @@
 // compiling the output with these tests as C++ over GLM, whose names are GLSL's.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "compiler/emit/emit.h"
 #include "compiler/emit/language.h"
 #include "emitted_programs_glsl.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
 #include "tests/support/random/random_scene.h"

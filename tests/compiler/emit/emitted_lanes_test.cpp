@@ -1,6 +1,5 @@
 // Compiles emitted C++ over the machine's lanes and compares it bit for bit with the machine, on every instruction
 // set.
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
@@ -27,6 +26,7 @@ namespace fathom::test::HWY_NAMESPACE {
 #include "hi.h"
 #include "scene_c.h"
 #include "scene_e.h"
+#include "tests/support/catch.h"
 
 using vm::HWY_NAMESPACE::Batch;
 

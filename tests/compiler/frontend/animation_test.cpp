@@ -1,10 +1,9 @@
 // Tests of the animation settings of scenes.
 #include "compiler/frontend/animation.h"
 
-#include <catch2/catch.hpp>
-
 #include "compiler/artefact/compiled_file.h"
 #include "compiler/compile.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::animation_test {

@@ -1,11 +1,11 @@
 // Staging of imported models: the front end adds a ground, a light and a camera.
 #include "compiler/frontend/stage.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "compiler/compile.h"
 #include "compiler/scene/lowest.h"
+#include "tests/support/catch.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::compiler::stage_test {

@@ -1,7 +1,7 @@
 // The box tree finds the same boxes as a test of each box.
 #include "compiler/geometry/box_tree.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <random>
 
 namespace fathom::box_tree_test {

@@ -1,11 +1,11 @@
 // Tests of hash-consing and of the graph's listing.
 #include "compiler/graph/graph.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 
 namespace fathom::graph_test {
 

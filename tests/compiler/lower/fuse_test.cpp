@@ -2,10 +2,10 @@
 #include "compiler/lower/fuse.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "compiler/lower/lower.h"
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/scaled_cases.h"

@@ -1,9 +1,9 @@
 // Golden listings: tests/golden/listings/*.txt hold a scene, its graph after each pass that changed the graph, and
 // the listings of both programs.
-#include <catch2/catch.hpp>
 
 #include "compiler/compile.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/scaled_cases.h"
 #include "vm/encoding/disassemble.h"

@@ -3,7 +3,6 @@
 #include "compiler/passes/passes.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -15,6 +14,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"

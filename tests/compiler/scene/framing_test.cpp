@@ -1,11 +1,11 @@
 // Cameras that show the whole of a box, tested with the rays that the renderer traces.
 #include "compiler/scene/framing.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/camera.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::framing_test {

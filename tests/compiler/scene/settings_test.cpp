@@ -1,10 +1,10 @@
 // The table of settings, and the merge of the scene's settings under overrides.
 #include "compiler/scene/settings.h"
 
-#include <catch2/catch.hpp>
 #include <set>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/setting_values.h"
 

@@ -1,7 +1,7 @@
 #include "compiler/scene/srgb.h"
+#include "tests/support/catch.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 namespace fathom::compiler::srgb_test {

@@ -1,11 +1,11 @@
 // The compiler's bounds of float errors and operator norms. Boxes and Lipschitz constants are in passes_test.cpp.
 #include "compiler/shapes/bounds.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "compiler/geometry/affine.h"
 #include "runtime/field/field.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"

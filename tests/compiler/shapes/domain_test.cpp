@@ -1,12 +1,12 @@
 // Regression tests of folded, repeated and bent space. The general tests use random graphs (passes_test.cpp) and rays
 // (tests/catalogue/warps_test.cpp).
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
 
 #include "compiler/derive/formula_field.h"
 #include "compiler/shapes/bounds.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"

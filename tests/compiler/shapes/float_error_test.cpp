@@ -1,7 +1,6 @@
 // Float errors of shapes and alterations of any proportion, compared with the compiler's bound. Near the surface the
 // error is at most kFloatError * (max(1, |p|, |d|) + cancellation) (compiler/graph/node_facts.h).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/make_node.h"
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/scaled_cases.h"

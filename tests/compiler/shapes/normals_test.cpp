@@ -1,12 +1,12 @@
 // Gradients of every primitive and of random graphs: unit length on the surface, never NaN, equal to difference
 // quotients.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
 
 #include "tests/compiler/shapes/primitives.h"
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/scaled_cases.h"
 

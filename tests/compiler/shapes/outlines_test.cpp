@@ -1,7 +1,6 @@
 // Outlines in space: extruded along z and revolved about y, they are as exact as the compiler claims. Outlines alone
 // go through the same tests as the solids (shapes_test.cpp).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -11,6 +10,7 @@
 
 #include "compiler/shapes/make_node.h"
 #include "compiler/shapes/node_table.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge_geometry.h"

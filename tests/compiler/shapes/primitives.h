@@ -2,13 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <string>
 #include <vector>
 
 #include "compiler/shapes/node_table.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"
 

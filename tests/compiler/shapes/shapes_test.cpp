@@ -1,7 +1,6 @@
 // Tests of every shape: the judge against brute force, the machine against the judge, and the properties that the
 // renderer needs of every distance field (a Lipschitz constant, a bounding box). Gradients: normals_test.cpp.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -11,6 +10,7 @@
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/brute_force.h"
 #include "tests/support/judge/brute_force_outlines.h"
 #include "tests/support/judge/judge.h"

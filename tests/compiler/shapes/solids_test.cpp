@@ -1,13 +1,13 @@
 // Solids made of other solids, and solids whose fields are not exact: the Menger sponge against its cubes, Julia sets
 // against their orbits.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 

@@ -5,7 +5,6 @@
 #include "compiler/source/diagnostics.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,6 +16,7 @@
 #include "compiler/compile.h"
 #include "compiler/frontend/text/read_text.h"
 #include "compiler/source/error_codes.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/import_folder.h"
 

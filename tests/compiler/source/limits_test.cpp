@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include "compiler/compile.h"
+#include "tests/support/catch.h"
 
 namespace fathom::limits_test {
 

@@ -1,11 +1,11 @@
 #include "compiler/source/line_diff.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <sstream>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 
 namespace fathom::line_diff_test {

@@ -7,10 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::atomic_file_test {

@@ -1,8 +1,8 @@
 // Coverage against a plain table of samples: covered, missing and doubled samples, for any blocks.
 #include "runtime/base/coverage.h"
+#include "tests/support/catch.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <random>
 #include <vector>

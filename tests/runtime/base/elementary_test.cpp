@@ -1,7 +1,7 @@
 #include "runtime/base/elementary.h"
+#include "tests/support/catch.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 namespace fathom::runtime::elementary_test {

@@ -1,8 +1,8 @@
 #include "runtime/base/file_watch.h"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::file_watch_test {

@@ -1,6 +1,6 @@
 #include "runtime/base/stats.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <thread>

@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "tests/runtime/chart/chart_samples.h"
 #include "tests/runtime/chart/svg_reading.h"
 #include "tests/runtime/cli/markup_check.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::chart_charts_test {
 namespace {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -7,6 +6,7 @@
 
 #include "runtime/chart/colormap.h"
 #include "runtime/image/image_io.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::chart_colormap_test {
 namespace {

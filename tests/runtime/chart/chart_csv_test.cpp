@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "runtime/chart/csv.h"
 #include "tests/runtime/chart/chart_samples.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::chart_csv_test {
 namespace {

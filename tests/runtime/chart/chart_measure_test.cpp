@@ -3,7 +3,6 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
@@ -16,6 +15,7 @@
 #include "runtime/measure/ray_sets.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "vm/encoding/digest.h"
 
 namespace fathom::runtime::chart_measure_test {

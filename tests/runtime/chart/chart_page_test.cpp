@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 
 #include "runtime/chart/chart_a.h"
 #include "runtime/chart/chart_b.h"
@@ -6,6 +5,7 @@
 #include "tests/runtime/chart/chart_samples.h"
 #include "tests/runtime/chart/svg_reading.h"
 #include "tests/runtime/cli/markup_check.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::chart_page_test {
 namespace {

@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "runtime/chart/fit.h"
 #include "runtime/chart/pareto.h"
 #include "tests/runtime/chart/chart_samples.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::chart_pareto_test {
 namespace {

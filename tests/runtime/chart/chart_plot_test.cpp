@@ -1,4 +1,3 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +9,7 @@
 #include "runtime/chart/plot_svg.h"
 #include "tests/runtime/chart/svg_reading.h"
 #include "tests/runtime/cli/markup_check.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::chart_plot_test {

@@ -1,12 +1,12 @@
 // End-to-end tests of `fathom chart`, and of `fathom render` with other marching methods.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_chart_test {

@@ -1,13 +1,13 @@
 // `fathom compile` and `fathom asm`, and every verb on their output.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::test::cli_compile_test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 constexpr const char* kSettable = R"({
   "version": 1,

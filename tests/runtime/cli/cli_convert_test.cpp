@@ -1,6 +1,6 @@
 // End-to-end tests of scenes in Fathom's own notation: every verb, conversion and layout.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_convert_test {

@@ -1,8 +1,8 @@
 // End-to-end tests of `fathom diff`.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_diff_test {

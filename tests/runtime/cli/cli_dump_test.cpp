@@ -1,7 +1,7 @@
 // End-to-end tests of `fathom dump` and `fathom schema`.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_dump_test {

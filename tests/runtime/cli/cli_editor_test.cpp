@@ -1,10 +1,10 @@
 // Files for editors: generated from the language's words, and able to parse the program's messages.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "compiler/frontend/text/parse/vocabulary.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_editor_test {

@@ -1,6 +1,6 @@
 // Files installed by `cmake --install` work in their installed location.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_install_test {

@@ -1,10 +1,10 @@
 // `fathom merge`: the merged parts of a render equal the whole render bit for bit, however the render was split.
 // Parts that do not fit are refused.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_merge_test {

@@ -1,8 +1,8 @@
 // End-to-end tests of scenes far from zero: all printed positions are the scene's, whatever origin the programs use.
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_origin_test {

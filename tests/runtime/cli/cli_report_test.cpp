@@ -1,7 +1,7 @@
 // End-to-end tests of `fathom report`.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::test::cli_report_test {

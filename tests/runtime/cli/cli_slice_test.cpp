@@ -1,6 +1,6 @@
 // End-to-end tests of `fathom slice`.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_slice_test {

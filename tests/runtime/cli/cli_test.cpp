@@ -1,7 +1,7 @@
 // End-to-end tests: exit codes, messages, data on stdout, files written and not written.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_test {

@@ -1,6 +1,6 @@
 // End-to-end tests of `fathom render` with --denoise, --preview and --watch.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_watch_test {

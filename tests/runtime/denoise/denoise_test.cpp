@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 
@@ -10,6 +9,7 @@
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::denoise_test {
 namespace {

@@ -3,10 +3,10 @@
 #include "runtime/field/region_forecast.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runtime/field/field.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random/random_scene.h"
 

@@ -1,11 +1,11 @@
 // Regions kept from one render to the next.
 #include "runtime/field/region_store.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runtime/field/field.h"
 #include "runtime/render.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::region_store_test {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "runtime/march/march.h"
 #include "runtime/path/surface.h"
 #include "runtime/render.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"

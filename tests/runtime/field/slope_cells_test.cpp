@@ -1,6 +1,5 @@
 #include "runtime/field/slope_cells.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -9,6 +8,7 @@
 #include "runtime/field/field.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::slope_cells_test {

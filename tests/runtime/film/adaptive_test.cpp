@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::adaptive_test {

@@ -1,7 +1,6 @@
 // Film files: a written file is read back, and a damaged, truncated or forged file is refused.
 #include "runtime/film/film_file.h"
 
-#include <catch2/catch.hpp>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -9,6 +8,7 @@
 
 #include "runtime/render.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "vm/encoding/digest.h"
 

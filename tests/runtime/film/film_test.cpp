@@ -1,13 +1,13 @@
 #include "runtime/film/film.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "runtime/render.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::film_test {
 namespace {

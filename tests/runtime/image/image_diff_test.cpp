@@ -1,6 +1,6 @@
 #include "runtime/image/image_diff.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 

@@ -6,12 +6,12 @@
 #include <ImfTiledOutputFile.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "runtime/image/image_exr.h"
 #include "tests/fuzz/target.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,11 +1,11 @@
 #include "runtime/image/image_exr.h"
 
-#include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
 
 #include "runtime/film/film_channels.h"
 #include "runtime/image/image_read.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::image_exr_test {

@@ -1,10 +1,10 @@
 #include "runtime/image/image_io.h"
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
 #include <limits>
 
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::image_io_test {

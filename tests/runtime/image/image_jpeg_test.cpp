@@ -1,7 +1,7 @@
 #include "runtime/image/image_jpeg.h"
+#include "tests/support/catch.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
 

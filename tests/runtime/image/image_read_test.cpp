@@ -1,13 +1,13 @@
 #include "runtime/image/image_read.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 
 #include "compiler/scene/srgb.h"
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_io.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::image_read_test {

@@ -1,11 +1,11 @@
 #include "runtime/image/image.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "compiler/scene/srgb.h"
 #include "runtime/film/film_layers.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::image_test {
 namespace {

@@ -1,7 +1,7 @@
 #include "runtime/image/tone.h"
+#include "tests/support/catch.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 

@@ -1,13 +1,13 @@
 // Environment maps read from files, and the messages about bad files.
 #include "runtime/light/environment_file.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "runtime/image/image_exr.h"
+#include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::runtime::environment_file_test {

@@ -1,13 +1,13 @@
 // The environment: radiance, and sampled directions against their density.
 #include "runtime/light/environment.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/base/color.h"
 #include "runtime/sampling/sampler.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/environments.h"
 #include "tests/support/sample_bins.h"

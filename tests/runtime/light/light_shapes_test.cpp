@@ -2,7 +2,6 @@
 // hits against samples.
 #include "runtime/light/light_shapes.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "runtime/sampling/sampler.h"
 #include "tests/support/area_light_patches.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::light_shapes_test {

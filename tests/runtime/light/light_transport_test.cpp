@@ -1,12 +1,12 @@
 // Whole images against closed forms of their light, and the light sampling strategies against each other.
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/render.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/support/light_scenes.h"
 #include "tests/support/scaled_cases.h"
 #include "tests/support/white_furnace.h"

@@ -2,11 +2,11 @@
 // be chosen.
 #include "runtime/light/light_tree.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 #include "tests/support/sample_bins.h"
 #include "tests/support/scaled_cases.h"
 

@@ -1,12 +1,12 @@
 // The daylight model: its published zenith luminance, its scale, its colours, its sun.
 #include "runtime/light/sky.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/base/color.h"
 #include "runtime/light/light_sample_context.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::sky_test {
 namespace {

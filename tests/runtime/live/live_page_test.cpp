@@ -2,13 +2,13 @@
 // matter of a browser.
 #include "runtime/live/live_page.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/temporary_folder.h"
 

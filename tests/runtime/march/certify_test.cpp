@@ -1,12 +1,12 @@
 #include "runtime/march/certify.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/march/march.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/vm/number/float_bits.h"
 
 namespace fathom::runtime::certify_test {

@@ -1,7 +1,6 @@
 #include "runtime/march/clip.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "tests/support/catch.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::clip_test {

@@ -2,7 +2,6 @@
 // lost, no ray hits the surface it left, and rays take fewer evaluations.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "runtime/march/march.h"
 #include "runtime/measure/ray_sets.h"
 #include "tests/catalogue/departures.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/scaled_cases.h"

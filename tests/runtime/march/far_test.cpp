@@ -1,7 +1,6 @@
 // Scenes far from zero, and small objects next to large ones: hits are as exact as near zero
 // (compiler/analysis/origin.h).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -9,6 +8,7 @@
 #include "runtime/march/march.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::far_test {
 namespace {

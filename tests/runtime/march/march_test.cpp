@@ -3,13 +3,13 @@
 #include "runtime/march/march.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <glm/geometric.hpp>
 
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::march_test {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
@@ -14,6 +13,7 @@
 #include "runtime/sampling/camera.h"
 #include "tests/runtime/rays.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "tests/vm/number/float_bits.h"
 
 namespace fathom::runtime::method_test {

@@ -1,7 +1,6 @@
 // Textures in the coordinates of the node that has the material: a transformed body keeps its grain.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include "runtime/material/material.h"
 #include "runtime/path/surface.h"
 #include "runtime/render.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::runtime::object_space_test {

@@ -1,7 +1,6 @@
 #include "runtime/material/bsdf.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/common.hpp>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/materials.h"
 #include "tests/support/scaled_cases.h"

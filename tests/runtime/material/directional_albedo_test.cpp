@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <thread>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "runtime/material/fresnel.h"
 #include "runtime/material/microfacet.h"
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::energy_test {

@@ -1,7 +1,6 @@
 // Materials at points: evaluated textures, conversions, mixtures.
 #include "runtime/material/material.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
@@ -37,6 +36,7 @@ void check_same(const MaterialPoint& a, const MaterialPoint& b) {
 #define PARAMETER(Type, member, ...) CHECK(a.member == b.member);
 #define COMBINED(...)
 #include "compiler/scene/material_parameters.def"
+#include "tests/support/catch.h"
 }
 
 TEST_CASE("material: the default is OpenPBR's", "[material]") {

@@ -1,9 +1,9 @@
 #include "runtime/material/microfacet.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runtime/sampling/warp.h"
+#include "tests/support/catch.h"
 #include "tests/support/chi_square.h"
 
 namespace fathom::runtime::microfacet_test {

@@ -1,9 +1,8 @@
 #include "runtime/mesh/contour.h"
 
-#include <catch2/catch.hpp>
-
 #include "runtime/mesh/find_cells.h"
 #include "tests/runtime/mesh/mesh_checks.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::contour_test {

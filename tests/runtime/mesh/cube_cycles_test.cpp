@@ -1,6 +1,6 @@
 #include "runtime/mesh/cube_cycles.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <set>
 
 namespace fathom::cube_cycles_test {

@@ -1,7 +1,6 @@
 #include "runtime/mesh/distance_proof.h"
 
-#include <catch2/catch.hpp>
-
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::distance_proof_test {

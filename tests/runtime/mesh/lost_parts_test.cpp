@@ -1,8 +1,7 @@
 #include "runtime/mesh/lost_parts.h"
 
-#include <catch2/catch.hpp>
-
 #include "tests/runtime/mesh/mesh_checks.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::lost_parts_test {

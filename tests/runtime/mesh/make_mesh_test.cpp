@@ -1,8 +1,7 @@
 #include "runtime/mesh/make_mesh.h"
 
-#include <catch2/catch.hpp>
-
 #include "tests/runtime/mesh/mesh_checks.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::make_mesh_test {

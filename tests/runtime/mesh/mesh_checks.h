@@ -1,7 +1,6 @@
 // Checks of meshes that share no code with the product: manifold edges and fans, volumes, distances.
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -12,6 +11,7 @@
 
 #include "runtime/mesh/make_mesh.h"
 #include "runtime/mesh/mesh.h"
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

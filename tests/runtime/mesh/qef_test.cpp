@@ -1,6 +1,6 @@
 #include "runtime/mesh/qef.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 namespace fathom::qef_test {

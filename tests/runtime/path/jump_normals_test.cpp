@@ -1,10 +1,10 @@
 #include "runtime/path/jump_normals.h"
 
-#include <catch2/catch.hpp>
 #include <glm/geometric.hpp>
 
 #include "runtime/path/surface.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::jump_normals_test {
 namespace {

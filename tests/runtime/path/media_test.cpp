@@ -1,10 +1,10 @@
 // Light through glass that touches, contains or lies inside another body.
-#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "runtime/render.h"
 #include "tests/runtime/estimate.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::media_test {
 namespace {

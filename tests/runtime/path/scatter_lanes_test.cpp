@@ -1,13 +1,13 @@
 // Diffuse samples in lanes against Bsdf, bit for bit.
 #include "runtime/path/scatter_lanes.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
 #include <random>
 
 #include "runtime/path/scatter.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::scatter_lanes_test {
 namespace {

@@ -1,6 +1,5 @@
 // The stages of the integrator, each on its own.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "runtime/path/mis.h"
 #include "runtime/path/scatter.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::stages_test {
 namespace {

@@ -1,12 +1,12 @@
 #include "runtime/path/surface.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <iterator>
 
 #include "runtime/field/field.h"
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::surface_test {
 namespace {

@@ -1,13 +1,13 @@
 #include "runtime/sampling/camera.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <vector>
 
 #include "runtime/sampling/camera_lanes.h"
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 #include "vm/number/real.h"
 
 namespace fathom::runtime::camera_test {

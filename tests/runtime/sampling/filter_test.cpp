@@ -1,11 +1,11 @@
 #include "runtime/sampling/filter.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::filter_test {
 namespace {

@@ -2,11 +2,11 @@
 // test: environment_test.cpp.
 #include "runtime/sampling/piecewise_constant_sphere.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::sphere_table_test {
 namespace {

@@ -2,10 +2,10 @@
 #include "runtime/sampling/sampler_lanes.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::sampler_lanes_test {

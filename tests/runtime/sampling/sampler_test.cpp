@@ -1,12 +1,12 @@
 #include "runtime/sampling/sampler.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <set>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::runtime::sampler_test {

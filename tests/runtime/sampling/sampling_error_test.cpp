@@ -1,8 +1,8 @@
 // The reasons for the samplers: how fast the error falls, and how small it is when pixels are averaged.
+#include "tests/support/catch.h"
 #include "tests/support/sampling_error.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 
 namespace fathom::runtime::sampling_error_test {

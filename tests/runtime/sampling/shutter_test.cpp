@@ -1,7 +1,7 @@
 // The moments at which a shutter sees the scene, and the seeds of frames.
 #include "runtime/sampling/shutter.h"
+#include "tests/support/catch.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 

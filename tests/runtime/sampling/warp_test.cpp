@@ -1,10 +1,10 @@
 #include "runtime/sampling/warp.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "runtime/sampling/sampler.h"
+#include "tests/support/catch.h"
 
 namespace fathom::runtime::warp_test {
 namespace {

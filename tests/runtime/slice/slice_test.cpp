@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "tests/runtime/scenes.h"
+#include "tests/support/catch.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom::slice_test {

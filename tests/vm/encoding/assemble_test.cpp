@@ -2,10 +2,10 @@
 // at its position.
 #include "vm/encoding/assemble.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <variant>
 
+#include "tests/support/catch.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
 #include "tests/support/scaled_cases.h"

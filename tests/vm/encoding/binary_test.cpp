@@ -2,11 +2,11 @@
 // another valid program.
 #include "vm/encoding/binary.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <variant>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/same_program.h"
 #include "tests/support/scaled_cases.h"

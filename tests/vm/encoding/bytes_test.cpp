@@ -3,9 +3,9 @@
 #include "vm/encoding/bytes.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/support/catch.h"
 #include "vm/encoding/digest.h"
 
 namespace fathom::test::bytes_test {

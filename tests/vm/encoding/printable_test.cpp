@@ -1,6 +1,6 @@
 #include "vm/encoding/printable.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 namespace fathom::vm::printable_test {
 

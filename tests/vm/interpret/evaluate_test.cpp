@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"

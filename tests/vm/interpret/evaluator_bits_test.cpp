@@ -1,11 +1,11 @@
 // Every evaluator gives the same bits on every processor, with every instruction set and compiler.
 #include "tests/support/evaluator_bits.h"
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 
 namespace fathom::test::evaluator_bits_test {

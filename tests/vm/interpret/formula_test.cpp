@@ -3,10 +3,10 @@
 #include "tests/vm/interpret/formula.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 #include "tests/vm/number/float_bits.h"
 #include "vm/range/slope.h"

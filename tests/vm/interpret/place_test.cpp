@@ -1,5 +1,4 @@
 // Tests of evaluate_place: the point in the coordinates of the node that carries the surface's paint.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -8,6 +7,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/plain_lowering.h"

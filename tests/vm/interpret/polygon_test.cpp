@@ -1,8 +1,8 @@
 // Compares the polygon opcode with brute force, and checks the rules of instructions with a variable number of
 // immediates.
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/support/catch.h"
 #include "tests/vm/interpret/formula.h"
 #include "vm/encoding/disassemble.h"
 #include "vm/range/slope.h"

@@ -2,7 +2,6 @@
 // set and at every position in a block.
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
 #include "tests/vm/interpret/formula.h"

@@ -1,8 +1,8 @@
 // Tests of the shares of surfaces where blends mix them.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "vm/interpret/evaluate.h"
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "tests/support/scaled_cases.h"

@@ -1,12 +1,12 @@
 // Native code has the interpreter's bits, for every opcode and for random programs.
 #include "vm/native/native_program.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"
 #include "tests/vm/number/float_bits.h"

@@ -1,7 +1,6 @@
 // Value and derivative along a line: sampled values and slopes lie within the bounds for every opcode. The bounds are
 // close to the exact answer, if that is known.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "compiler/shapes/make_node.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge.h"
 #include "tests/support/scaled_cases.h"
 #include "tests/vm/interpret/formula.h"

@@ -2,11 +2,11 @@
 // their values at the edges of their domains.
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <thread>
 
+#include "tests/support/catch.h"
 #include "tests/vm/interpret/formula.h"
 #include "vm/number/real.h"
 

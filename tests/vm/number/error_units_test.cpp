@@ -1,7 +1,7 @@
 // Arithmetic of bounds that libm would compute differently on other processors.
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "tests/support/catch.h"
 #include "vm/number/error_units-inl.h"
 
 namespace fathom::test::error_units_test {

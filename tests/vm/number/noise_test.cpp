@@ -1,11 +1,11 @@
 // Gradient noise: compared with its definition; a proof of its range and max slope; its bounds over boxes; its edges.
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge_noise.h"
 #include "tests/support/scaled_cases.h"
 #include "tests/vm/range/boxes.h"

@@ -1,10 +1,10 @@
 // The opcodes that join and alter values, one at a time: compared with their definitions and with each other.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"

@@ -1,7 +1,7 @@
 // Canary for the compiler bug that -fno-tree-slp-vectorize works around: g++ 12 at -O2 drops the rounding of double
 // -> float -> double for two of three adjacent struct members. A float ray compared in double does exactly that
 // conversion.
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 namespace fathom::test::rounding_test {
 namespace {

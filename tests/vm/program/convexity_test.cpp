@@ -3,12 +3,12 @@
 #include "vm/program/convexity.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
 
 #include "compiler/shapes/bounds.h"
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/scaled_cases.h"

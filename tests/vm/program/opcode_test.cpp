@@ -2,12 +2,12 @@
 // convexity_test.cpp.
 #include "vm/program/opcode.h"
 
-#include <catch2/catch.hpp>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"

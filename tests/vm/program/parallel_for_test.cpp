@@ -1,9 +1,10 @@
 #include "vm/program/parallel_for.h"
 
-#include <catch2/catch.hpp>
 #include <memory>
 #include <mutex>
 #include <set>
+
+#include "tests/support/catch.h"
 
 namespace fathom {
 

@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <sstream>
 #include <string>
 #include <variant>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "vm/program/verify.h"
 

@@ -1,8 +1,8 @@
 // Tests of the verifier: each rule broken alone, by the smallest program that breaks it, and each limit at its edge.
+#include "tests/support/catch.h"
 #include "vm/program/verify.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <limits>
 #include <string>
 #include <variant>
@@ -11,7 +11,7 @@
 namespace fathom::test::verify_test {
 namespace {
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using vm::Opcode;
 using vm::Program;
 

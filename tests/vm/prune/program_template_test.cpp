@@ -3,7 +3,6 @@
 #include "vm/prune/program_template.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "compiler/lower/fuse.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"

@@ -4,13 +4,13 @@
 #include "vm/prune/specialise.h"
 
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <variant>
 
 #include "compiler/lower/fuse.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_program.h"

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/vm/interpret/formula.h"
 #include "tests/vm/number/float_bits.h"
 #include "vm/range/enclose.h"

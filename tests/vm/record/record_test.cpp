@@ -2,10 +2,10 @@
 // machine's. tests/compiler/emit/emitted_cpp_test.cpp compiles the emitted source.
 #include "vm/record/record.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/vm/number/float_bits.h"

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -15,6 +14,7 @@
 #include "compiler/frontend/syntax/json.h"
 #include "compiler/shapes/node_table.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/catch.h"
 #include "tests/support/scaled_cases.h"
 
 namespace fathom::elaborate_test {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "compiler/frontend/elaborate/elaborate.h"
 #include "compiler/frontend/syntax/json.h"
 #include "compiler/shapes/print_graph.h"
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/vector_relational.hpp>
 #include <map>
@@ -15,6 +14,7 @@
 #include "compiler/frontend/records/material_presets.h"
 #include "compiler/frontend/records/records.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 
 namespace fathom::materials_test {

@@ -1,8 +1,8 @@
 #include "compiler/frontend/formats/expression_list.h"
 
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/golden.h"
 #include "tests/support/plain_list.h"

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/golden.h"
 #include "tests/support/scaled_cases.h"

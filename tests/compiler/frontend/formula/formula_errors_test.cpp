@@ -1,7 +1,6 @@
 // Formulas with errors: the messages and their positions.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "compiler/frontend/formula/formula_evaluate.h"
 #include "compiler/frontend/formula/read_formula.h"
 #include "tests/compiler/frontend/formula/formula_texts.h"
+#include "tests/support/catch.h"
 
 namespace fathom::formula_errors_test {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +14,7 @@
 #include "compiler/frontend/formula/read_formula.h"
 #include "compiler/frontend/text/read_text.h"
 #include "tests/compiler/frontend/formula/formula_texts.h"
+#include "tests/support/catch.h"
 #include "tests/support/judge/judge_noise.h"
 
 namespace fathom::formula_test {

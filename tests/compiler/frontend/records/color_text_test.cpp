@@ -1,9 +1,9 @@
 // Colours written as sRGB codes, and translations of outlines written as two numbers.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "compiler/compile.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 
 namespace fathom::test::color_text_test {

@@ -1,7 +1,6 @@
 // The numbers of a scene: formulas in place of numbers, parameters, and values that are not numbers.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -12,6 +11,7 @@
 #include "compiler/frontend/records/written_numbers.h"
 #include "compiler/frontend/syntax/json.h"
 #include "tests/compiler/frontend/elaborate/elaborated.h"
+#include "tests/support/catch.h"
 
 namespace fathom::scene_numbers_test {
 

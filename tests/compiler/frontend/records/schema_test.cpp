@@ -3,7 +3,6 @@
 #include "compiler/frontend/records/schema.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,6 +15,7 @@
 #include "compiler/compile.h"
 #include "compiler/frontend/text/read_text.h"
 #include "compiler/shapes/node_table.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/schema_check.h"
 

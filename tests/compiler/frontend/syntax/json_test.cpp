@@ -1,9 +1,8 @@
 // The JSON front end: values, spans and limits. Messages: tests/golden/diagnostics.
 #include "compiler/frontend/syntax/json.h"
 
-#include <catch2/catch.hpp>
-
 #include "compiler/frontend/formats/print_syntax.h"
+#include "tests/support/catch.h"
 
 namespace fathom::json_test {
 

@@ -1,5 +1,4 @@
 // Conversion from JSON to text and back loses nothing.
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -11,6 +10,7 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/print.h"
 #include "compiler/frontend/text/read_text.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/import_folder.h"
 #include "tests/support/random/random_document.h"

@@ -1,12 +1,12 @@
 // Evaluation of texts: values, nodes, and the scene that an equivalent JSON file describes.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "compiler/compile.h"
 #include "compiler/frontend/formats/write_json.h"
 #include "compiler/frontend/text/read_text.h"
+#include "tests/support/catch.h"
 
 namespace fathom::text_evaluate_test {
 

@@ -1,5 +1,4 @@
 // The layout of texts: formatting keeps tokens and comments, and formatting again changes nothing.
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
@@ -7,6 +6,7 @@
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/parse/lexer.h"
 #include "compiler/frontend/text/print.h"
+#include "tests/support/catch.h"
 #include "tests/support/random/random_document.h"
 #include "tests/support/scaled_cases.h"
 

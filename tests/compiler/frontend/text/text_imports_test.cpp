@@ -1,12 +1,12 @@
 // Texts with imports: the meaning of imported names, the lookup of files, and scenes that are equal however they are
 // split into files.
-#include <catch2/catch.hpp>
 #include <map>
 
 #include "compiler/artefact/compiled_file.h"
 #include "compiler/artefact/listing.h"
 #include "compiler/compile.h"
 #include "compiler/frontend/formats/write_json.h"
+#include "tests/support/catch.h"
 
 namespace fathom::text_imports_test {
 

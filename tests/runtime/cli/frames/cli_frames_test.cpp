@@ -1,8 +1,8 @@
 // End-to-end tests of frame sequences: file names, resuming, refusals.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "runtime/film/film_file.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/scaled_cases.h"
 

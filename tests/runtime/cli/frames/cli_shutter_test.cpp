@@ -1,7 +1,7 @@
 // End-to-end tests of cameras with a shutter.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/scaled_cases.h"
 

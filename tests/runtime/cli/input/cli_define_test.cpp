@@ -1,6 +1,6 @@
 // -D: the scene's parameters set on the command line.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_define_test {

@@ -1,11 +1,11 @@
 // File and message handling of every verb: a full disk, names with control characters, out of memory, and signals at
 // bad moments.
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_files_test {

@@ -1,6 +1,6 @@
 // End-to-end tests of models in other formats.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 

@@ -1,7 +1,7 @@
 // End-to-end tests of imports: which files may be read, compiled scenes that contain their imports, and messages.
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_imports_test {

@@ -1,10 +1,10 @@
 // --limit on the command line, and the program's own limits: file size, image size, memory.
 #include <fmt/format.h>
 
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "compiler/source/limits.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_limits_test {

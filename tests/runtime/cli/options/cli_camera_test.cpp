@@ -1,9 +1,9 @@
 // Scenes without a camera, and --position, --look-at and --frame.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <sstream>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_camera_test {

@@ -1,6 +1,6 @@
 // Files generated from the option tables: completion scripts and the manual page.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_completion_test {

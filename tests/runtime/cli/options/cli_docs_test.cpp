@@ -1,10 +1,10 @@
 // Runs the commands that README.md and other pages show on the scenes of these pages: the output must be as shown.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/program.h"
 

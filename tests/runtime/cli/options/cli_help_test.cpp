@@ -1,7 +1,7 @@
 // Help of every verb: as wide as the terminal, and about the options that exist.
-#include <catch2/catch.hpp>
 #include <set>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_help_test {

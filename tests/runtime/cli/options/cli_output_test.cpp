@@ -1,6 +1,6 @@
 // Images on standard output: `-o -` of every verb that writes images.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_output_test {

@@ -1,6 +1,6 @@
 // The program's command line: errors in it, --help, --version.
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_usage_test {

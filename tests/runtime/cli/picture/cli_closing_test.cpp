@@ -1,7 +1,7 @@
 // The lines that a render prints at its end.
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_closing_test {

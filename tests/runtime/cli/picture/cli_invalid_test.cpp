@@ -1,8 +1,8 @@
 // Messages of `check` and `render` about a field that is NaN somewhere. Regression: rays that met a NaN were black
 // without a warning.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_invalid_test {

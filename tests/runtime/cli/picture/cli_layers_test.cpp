@@ -1,9 +1,9 @@
 // Images and their layers as `fathom render` and `fathom tonemap` write them: formats, crops, tone curves,
 // attributes.
-#include <catch2/catch.hpp>
 
 #include "runtime/film/film_channels.h"
 #include "runtime/image/image_read.h"
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_layers_test {

@@ -1,8 +1,8 @@
 // Warnings of `check` and `render` about images that show nothing: no light, nothing in view, black or a single
 // color.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_picture_warning_test {

@@ -1,8 +1,8 @@
 // `fathom render` with --profile and --cost-map: output, files and refusals.
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_profile_test {

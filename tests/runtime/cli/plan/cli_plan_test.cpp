@@ -1,10 +1,10 @@
 // `fathom plan`: the units of a plan, rendered in any order by any machine, equal the whole render bit for bit.
 // Missing or broken units are found, and units that do not belong together are refused.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_plan_test {

@@ -1,9 +1,9 @@
 // Attacks on the server of `fathom view`: by other sites in the user's browser, and by programs of the machine that
 // do not know the token. None gets anything of the scene, and the server answers its own page afterwards.
-#include <catch2/catch.hpp>
 #include <string>
 
 #include "tests/runtime/cli/view/view_client.h"
+#include "tests/support/catch.h"
 
 namespace fathom::test::cli_view_attacks_test {
 namespace {

@@ -1,8 +1,8 @@
 #include "runtime/mesh/files/mesh_file.h"
+#include "tests/support/catch.h"
 
 #include <zip.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <sstream>
