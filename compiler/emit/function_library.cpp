@@ -1,6 +1,7 @@
 #include "compiler/emit/function_library.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <utility>
 

@@ -1,6 +1,7 @@
 #include "compiler/shapes/print_graph.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <unordered_map>

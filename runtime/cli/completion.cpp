@@ -2,6 +2,7 @@
 // tables.
 // Tested by: tests/runtime/cli/options/cli_completion_test.cpp
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ostream>

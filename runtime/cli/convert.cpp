@@ -1,6 +1,7 @@
 // fathom convert: converts scenes from JSON to text and back.
 // Tested by: tests/runtime/cli/cli_convert_test.cpp
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ostream>

@@ -1,6 +1,7 @@
 #include "runtime/cli/editor_files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 #include <string_view>

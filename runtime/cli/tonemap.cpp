@@ -2,6 +2,7 @@
 // image that the render itself would have written.
 // Tested by: tests/runtime/cli/picture/cli_layers_test.cpp
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <ostream>
 

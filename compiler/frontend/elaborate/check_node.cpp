@@ -1,6 +1,7 @@
 #include "compiler/frontend/elaborate/check_node.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <glm/geometric.hpp>

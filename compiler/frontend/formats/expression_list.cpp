@@ -1,6 +1,7 @@
 #include "compiler/frontend/formats/expression_list.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

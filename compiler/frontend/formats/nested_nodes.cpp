@@ -1,6 +1,7 @@
 #include "compiler/frontend/formats/nested_nodes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

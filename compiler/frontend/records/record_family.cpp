@@ -1,6 +1,7 @@
 #include "compiler/frontend/records/record_family.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <string>
 

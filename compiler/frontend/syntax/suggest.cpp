@@ -1,6 +1,7 @@
 #include "compiler/frontend/syntax/suggest.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 

@@ -1,6 +1,7 @@
 #include "compiler/frontend/text/print.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "runtime/cli/options/output_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

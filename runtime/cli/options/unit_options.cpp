@@ -1,6 +1,7 @@
 #include "runtime/cli/options/unit_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
 #include "runtime/cli/picture/image_attributes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -106,7 +106,8 @@ Value Evaluator::run_parameter(const Statement& statement) {
   property.value = std::make_unique<syntax::Value>(record.take());
   if (given) property.value->span = given->span;  // place of a range error
   const bool own_file = statement.module == 0;
-  const Scope::Entry& entry = read_parameter(property, own_file ? definitions_ : Definitions{},
+  const Definitions none;
+  const Scope::Entry& entry = read_parameter(property, own_file ? definitions_ : none,
                                              own_file ? out_.parameters : scopes_[statement.module], diagnostics_);
   if (entry.state != Scope::State::Known) throw Failure();
   Value value = number(entry.parameter.value, statement.value->span);
