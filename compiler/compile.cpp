@@ -30,6 +30,7 @@
 #include "compiler/shapes/blends.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/node_table.h"
+#include "vm/number/decimal.h"
 #include "vm/program/opcode.h"
 
 namespace fathom::compiler {
@@ -267,11 +268,12 @@ void warn_of_smallness(const Scene& scene, const std::vector<NodeFacts>& known, 
   if (span.end == 0 && !scene.graph.children(scene.root).empty()) {
     span = scene.graph.origin(scene.graph.children(scene.root)[0]).span;
   }
+  const auto exponent = static_cast<int>(std::round(-vm::real::log10(std::max(size, 1e-300))));
   diagnostics.warning("W0513", span,
                       fmt::format("the scene is too small: {:.2g} from end to end, camera and all", size),
                       "errors shrink with places down to those around 1, and no further",
                       {fmt::format("multiply every length by {:.0e}, those of the camera too; pictures stay the same",
-                                   std::pow(10.0, std::round(-std::log10(std::max(size, 1e-300)))))});
+                                   vm::real::power_of_ten(exponent))});
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "compiler/shapes/rows.h"
@@ -91,11 +92,25 @@ double escape_radius(double power) {
   }
   return r;
 }
+// Returns the largest whole number whose `power`-th power is at most 10^18. Divides whole numbers, which is exact.
+double largest_bailout(double power) {
+  const auto fits = [&](std::uint64_t bailout) {
+    std::uint64_t rest = 1'000'000'000'000'000'000;
+    for (int i = 0; i < static_cast<int>(power); ++i) rest /= bailout;
+    return rest > 0;
+  };
+  std::uint64_t fitting = 1, beyond = 1'000'000'001;
+  while (beyond - fitting > 1) {
+    const std::uint64_t middle = (fitting + beyond) / 2;
+    (fits(middle) ? fitting : beyond) = middle;
+  }
+  return static_cast<double>(fitting);
+}
 ErrorText check_mandelbulb(Params p) {
   if (p[0] < 2 || p[0] > 24) return fmt::format("`power` is {}; it must be a whole number from 2 to 24", p[0]);
   if (p[1] > 256) return fmt::format("`iterations` is {}; it must be a whole number from 1 to 256", p[1]);
   // |w|^2 after the escaping iteration is about bailout^(2 power) and must fit into a float.
-  const double largest = std::floor(std::pow(10.0, 18 / p[0]));
+  const double largest = largest_bailout(p[0]);
   if (p[2] < 2 || p[2] > largest) {
     return fmt::format("`bailout` is {}; for power {} it must be between 2 and {}", p[2], p[0], largest);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vm/number/decimal.h"
 #include "vm/program/verify.h"
 
 namespace fathom::compiler {
@@ -13,7 +14,7 @@ std::string raise(double Limits::*value, double needed) {
   const LimitRow& row = limit_row(value);
   if (needed > row.largest) return fmt::format("{} {} are the most that can be: {}", row.largest, row.unit, row.why);
   // Rounds up to two significant digits, which are easy to read.
-  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(needed)) - 1));
+  const double step = vm::real::power_of_ten(std::max(0, vm::real::decimal_exponent(needed) - 1));
   const double enough = std::min(row.largest, std::ceil(needed / step) * step);
   return fmt::format("`--limit {}={}` allows more", row.name, enough);
 }

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "runtime/chart/markup.h"
-#include "vm/number/real.h"
+#include "vm/number/decimal.h"
 
 namespace fathom::runtime {
 namespace {
@@ -71,17 +70,9 @@ constexpr Rgb kPaper{255, 255, 255}, kLabelInk{40, 40, 40};
 constexpr int kMargin = 8, kBarHeight = 12, kBoxWidth = 18, kNarrowest = 160;
 constexpr int kBarTop = 5, kTickHeight = 3, kTextGap = 2;
 
-// The functions of libm differ between processors, and pictures would.
-double decades(double value) { return vm::real::log(value) / std::numbers::ln10; }
-double power_of_ten(double exponent) {
-  double power = 1;
-  for (double n = std::abs(exponent); n > 0; --n) power *= 10;
-  return exponent < 0 ? 1 / power : power;
-}
-
 // Returns the smallest 1, 2 or 5 times a power of ten that is not less than `value`.
 double round_up(double value) {
-  const double power = power_of_ten(std::floor(decades(value)));
+  const double power = vm::real::power_of_ten(vm::real::decimal_exponent(value));
   for (const double digit : {1.0, 2.0, 5.0}) {
     if (digit * power >= value * (1 - 1e-9)) return digit * power;
   }
@@ -93,10 +84,10 @@ double round_up(double value) {
 std::vector<double> marks_of(const ColorScale& scale, int most) {
   std::vector<double> marks;
   if (scale.logarithmic) {
-    const double lo = decades(scale.lo), hi = decades(scale.hi);
+    const double lo = vm::real::log10(scale.lo), hi = vm::real::log10(scale.hi);
     const int stride = std::max(1, static_cast<int>(std::ceil((hi - lo) / most)));
     for (int decade = static_cast<int>(std::ceil(lo - 1e-9)); decade <= hi + 1e-9; decade += stride) {
-      marks.push_back(power_of_ten(decade));
+      marks.push_back(vm::real::power_of_ten(decade));
     }
     return marks;
   }
@@ -125,10 +116,10 @@ void draw_scale(ByteImage& picture, int top, const ColorScale& scale) {
     fill(picture, left + x, top + kBarTop, 1, kBarHeight, viridis(width > 1 ? x / (width - 1.0) : 0));
   }
   if (!named) return;
-  const double lo = scale.logarithmic ? decades(scale.lo) : scale.lo;
-  const double hi = scale.logarithmic ? decades(scale.hi) : scale.hi;
+  const double lo = scale.logarithmic ? vm::real::log10(scale.lo) : scale.lo;
+  const double hi = scale.logarithmic ? vm::real::log10(scale.hi) : scale.hi;
   for (const double mark : marks_of(scale, std::max(1, width / 48))) {
-    const double at = ((scale.logarithmic ? decades(mark) : mark) - lo) / (hi - lo);
+    const double at = ((scale.logarithmic ? vm::real::log10(mark) : mark) - lo) / (hi - lo);
     const int x = left + static_cast<int>(std::lround(at * (width - 1)));
     const std::string text = readable(mark);
     const int text_left = std::clamp(x - width_of(text) / 2, left, picture.width - 2 - width_of(text));
@@ -156,7 +147,7 @@ Rgb ColorScale::color(double value) const {
   if (std::isnan(value)) return kMissing;
   if (!logarithmic) return viridis((value - lo) / (hi - lo));
   if (value <= 0) return kNothing;
-  return viridis((decades(value) - decades(lo)) / (decades(hi) - decades(lo)));
+  return viridis((vm::real::log10(value) - vm::real::log10(lo)) / (vm::real::log10(hi) - vm::real::log10(lo)));
 }
 
 ColorScale scale_for(std::span<const float> values, bool logarithmic) {
@@ -168,8 +159,9 @@ ColorScale scale_for(std::span<const float> values, bool logarithmic) {
   }
   if (logarithmic) {
     if (lo > hi) return {true, 1, 10};
-    const double low = std::floor(decades(lo) + 1e-6), high = std::ceil(decades(hi) - 1e-6);
-    return {true, power_of_ten(low), power_of_ten(std::max(high, low + 1))};
+    const auto low = static_cast<int>(std::floor(vm::real::log10(lo) + 1e-6));
+    const auto high = static_cast<int>(std::ceil(vm::real::log10(hi) - 1e-6));
+    return {true, vm::real::power_of_ten(low), vm::real::power_of_ten(std::max(high, low + 1))};
   }
   if (lo > hi || (lo == 0 && hi == 0)) return {false, 0, 1};
   return {false, lo < 0 ? -round_up(-lo) : 0, hi > 0 ? round_up(hi) : 0};

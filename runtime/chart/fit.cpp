@@ -5,6 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "vm/number/real.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -19,8 +21,8 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   std::vector<double> logs_x, logs_y;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!(x[i] > 0 && y[i] > 0 && std::isfinite(x[i]) && std::isfinite(y[i]))) continue;
-    logs_x.push_back(std::log(x[i]));
-    logs_y.push_back(std::log(y[i]));
+    logs_x.push_back(vm::real::log(x[i]));
+    logs_y.push_back(vm::real::log(y[i]));
   }
   const auto mean = [](const std::vector<double>& numbers) {
     double sum = 0;
@@ -35,7 +37,7 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   }
   if (!(variance > 0)) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   const double slope = covariance / variance;
-  return {slope, std::exp(mean_y - slope * mean_x)};
+  return {slope, vm::real::exp(mean_y - slope * mean_x)};
 }
 
 std::vector<ImageCurve> fit_curves(std::span<const ImageMeasurement> rows) {
@@ -58,7 +60,7 @@ std::vector<ImageCurve> fit_curves(std::span<const ImageMeasurement> rows) {
 
 double seconds_to(const ImageCurve& curve, double relmse) {
   if (!(curve.slope < 0)) return std::numeric_limits<double>::quiet_NaN();
-  return std::pow(relmse / curve.factor, 1 / curve.slope);
+  return vm::real::pow(relmse / curve.factor, 1 / curve.slope);
 }
 
 }  // namespace fathom::runtime

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "runtime/chart/markup.h"
+#include "vm/number/decimal.h"
 
 namespace fathom::runtime {
 namespace {
@@ -35,8 +36,8 @@ LogAxis::LogAxis(std::span<const double> values, double length, double padding) 
     if (value == 0) {
       has_zero_ = true;
     } else {
-      low = std::min(low, std::log10(value));
-      high = std::max(high, std::log10(value));
+      low = std::min(low, vm::real::log10(value));
+      high = std::max(high, vm::real::log10(value));
     }
   }
   if (low > high) low = high = 0;
@@ -51,7 +52,7 @@ LogAxis::LogAxis(std::span<const double> values, double length, double padding) 
 
 double LogAxis::position(double value) const {
   if (value == 0) return begin_ / 2;
-  return begin_ + (std::log10(value) - low_) / decades_ * (length_ - begin_);
+  return begin_ + (vm::real::log10(value) - low_) / decades_ * (length_ - begin_);
 }
 
 double LogAxis::break_position() const { return begin_; }
@@ -59,15 +60,15 @@ double LogAxis::break_position() const { return begin_; }
 std::vector<Tick> LogAxis::ticks(double label_room) const {
   const double pixels_per_decade = (length_ - begin_) / decades_;
   // The narrowest gaps between 1, 2, 5 and 10 are from 1 to 2 and from 5 to 10.
-  const bool label_between = pixels_per_decade * std::log10(2.0) >= label_room;
+  const bool label_between = pixels_per_decade * vm::real::log10(2.0) >= label_room;
   const int stride = std::max(1, static_cast<int>(std::ceil(label_room / pixels_per_decade)));
   std::vector<Tick> ticks;
-  for (int decade = static_cast<int>(std::floor(low_)); decade <= low_ + decades_; ++decade) {
+  for (int decade = static_cast<int>(std::floor(low_)); decade <= low_ + decades_ + kAxisEdge; ++decade) {
     for (int digit = 1; digit <= 9; ++digit) {
       const bool two_or_five = digit == 2 || digit == 5;
       const double room = digit == 1 ? 0 : two_or_five ? kRoomForTwoAndFive : kRoomForAll;
       if (pixels_per_decade < room) continue;
-      const double at = decade + std::log10(digit) - low_;
+      const double at = decade + vm::real::log10(digit) - low_;
       if (at < -kAxisEdge || at > decades_ + kAxisEdge) continue;
       // Parsing "1e-5" gives the nearest double. A computed power of ten may be off by one unit in the last place.
       const std::string text = fmt::format("{}e{}", digit, decade);

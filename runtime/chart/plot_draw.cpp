@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runtime/chart/markup.h"
+#include "vm/number/decimal.h"
 
 namespace fathom::runtime {
 namespace {
@@ -23,7 +24,7 @@ std::string text_attributes(glm::dvec2 at, const TextStyle& style) {
 
 double disc_radius(double failures_ppm) {
   if (!(failures_ppm > 0)) return 0;
-  return kLargestDisc * std::sqrt(std::log10(1 + std::min(failures_ppm, 1e6)) / std::log10(1e6 + 1));
+  return kLargestDisc * std::sqrt(vm::real::log10(1 + std::min(failures_ppm, 1e6)) / vm::real::log10(1e6 + 1));
 }
 
 double text_width(std::string_view text, double size, bool bold) {

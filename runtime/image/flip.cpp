@@ -89,7 +89,10 @@ using Kernel = std::vector<float>;
 
 Kernel gaussian(float per_square, int radius) {  // e^(-x^2 per_square)
   Kernel kernel;
-  for (int x = -radius; x <= radius; ++x) kernel.push_back(exp(-static_cast<float>(x * x) * per_square));
+  for (int x = -radius; x <= radius; ++x) {
+    const float power = -static_cast<float>(x * x) * per_square;
+    kernel.push_back(static_cast<float>(vm::real::exp(static_cast<double>(power))));
+  }
   return kernel;
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/march/march.h"
 #include "runtime/measure/stopwatch.h"
 #include "runtime/path/surface.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -50,7 +51,7 @@ std::vector<glm::dvec3> normals_at(const compiler::CompiledScene& scene, const F
   return normals;
 }
 
-double angle(glm::dvec3 a, glm::dvec3 b) { return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
+double angle(glm::dvec3 a, glm::dvec3 b) { return vm::real::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)); }
 
 class Comparison {
  public:

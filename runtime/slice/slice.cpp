@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "vm/number/decimal.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -84,10 +86,11 @@ ByteImage sign_image(const std::vector<float>& field, int width, int height) {
 
 double band_step(double length) {
   const double wanted = length / 10;
-  const double power = std::pow(10, std::floor(std::log10(wanted)));
+  const double power = vm::real::power_of_ten(vm::real::decimal_exponent(wanted));
+  const auto factor = [&](double step) { return std::max(step / wanted, wanted / step); };
   double best = power;
   for (const double step : {2 * power, 5 * power, 10 * power}) {
-    if (std::abs(std::log(step / wanted)) < std::abs(std::log(best / wanted))) best = step;
+    if (factor(step) < factor(best)) best = step;
   }
   return best;
 }

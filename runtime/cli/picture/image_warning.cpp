@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <vector>
 
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image.h"
 #include "runtime/sampling/camera.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/number/real.h"
 
 namespace fathom::cli {
 namespace {
@@ -94,7 +96,9 @@ std::optional<std::string> solid_around_camera(const compiler::CompiledScene& sc
 }
 
 // Returns the exposure, in stops, that brings the brightest channel to one half.
-double stops_to_show(double brightest) { return std::clamp(std::round(std::log2(0.5 / brightest)), -100.0, 100.0); }
+double stops_to_show(double brightest) {
+  return std::clamp(std::round(vm::real::log(0.5 / brightest) / std::numbers::ln2), -100.0, 100.0);
+}
 
 }  // namespace
 

@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compiler/shapes/bounds.h"
 #include "tests/compiler/shapes/primitives.h"
@@ -220,6 +222,21 @@ TEST_CASE("a primitive's box is tight", "[shapes]") {
       }
     }
   });
+}
+
+// Regression: the largest bailout came from the pow of libm, whose last bit differs between machines. At powers 2, 3,
+// 6, 9 and 18 the root is a whole number, which one bit less rounds down.
+TEST_CASE("a mandelbulb's bailout to its power is at most 10^18, to the unit", "[shapes]") {
+  const std::pair<double, double> largest[] = {{2, 1e9}, {3, 1e6}, {4, 31622}, {5, 3981}, {6, 1000}, {7, 372},
+                                               {9, 100}, {12, 31}, {17, 11},   {18, 10},  {19, 8},   {24, 5}};
+  const NodeSpec& row = compiler::spec(Kind::Mandelbulb);
+  for (const auto& [power, bailout] : largest) {
+    const auto refused = [&](double of) { return row.check(std::vector{power, 8.0, of, 0.001}); };
+    CAPTURE(power);
+    CHECK_FALSE(refused(bailout));
+    REQUIRE(refused(bailout + 1));
+    CHECK(refused(bailout + 1)->ends_with(" between 2 and " + std::to_string(std::lround(bailout))));
+  }
 }
 
 }  // namespace fathom::test::shapes_test

@@ -190,6 +190,9 @@ TEST_CASE("limits: docs/reference/limits.md is the table", "[limits]") {
 
 TEST_CASE("limits: how to allow more is a number that is easily read", "[limits]") {
   CHECK(raise(&Limits::nodes, 1234567) == "`--limit nodes=1300000` allows more");
+  CHECK(raise(&Limits::nodes, 999999) == "`--limit nodes=1000000` allows more");
+  CHECK(raise(&Limits::nodes, 1000000) == "`--limit nodes=1000000` allows more");
+  CHECK(raise(&Limits::nodes, 1000001) == "`--limit nodes=1100000` allows more");
   CHECK(raise(&Limits::samples, 9) == "`--limit samples=9` allows more");
   CHECK(raise(&Limits::nesting, 5000) == "4096 levels are the most that can be: the stack's size");
 }

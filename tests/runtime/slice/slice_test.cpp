@@ -110,6 +110,11 @@ TEST_CASE("slice: bands have round steps", "[slice]") {
   CHECK(band_step(4.4) == Approx(0.5));
   CHECK(band_step(80) == Approx(10));
   CHECK(band_step(3e-7) == Approx(2e-8));
+  // Steps are equal as numbers, not almost: a report prints them. From 1 to 2 the middle is the square root of 2.
+  CHECK(band_step(1e4) == 1000);
+  CHECK(band_step(14.142) == 1);
+  CHECK(band_step(14.143) == 2);
+  CHECK(band_step(1e-5) == Approx(1e-6).epsilon(1e-15));
 }
 
 TEST_CASE("slice: a picture of distances tells inside from outside, the surface and what is not a number",
