@@ -150,7 +150,7 @@ std::vector<std::string> find_circle() {
 
 }  // namespace
 
-TEST_CASE("a folder includes only folders before it", "[layers]") {
+TEST_CASE("a folder includes only folders before it", "[house][layers]") {
   const auto position = [](const std::string& folder) { return std::ranges::find(kFolders, folder); };
   std::map<std::string, int> counts;
   for (const auto& [file, includes] : all_includes()) {
@@ -172,12 +172,12 @@ TEST_CASE("a folder includes only folders before it", "[layers]") {
   }
 }
 
-TEST_CASE("no two units include each other", "[layers]") {
+TEST_CASE("no two units include each other", "[house][layers]") {
   for (const std::string& unit : find_circle()) FAIL_CHECK(unit);
   CHECK(all_includes().size() > 500);
 }
 
-TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]") {
+TEST_CASE("the renderer sees of the compiler only what it hands over", "[house][layers]") {
   for (const auto& [file, includes] : all_includes()) {
     if (!file.starts_with("runtime/") || is_client(file)) continue;
     for (const std::string& include : includes) {
@@ -188,7 +188,7 @@ TEST_CASE("the renderer sees of the compiler only what it hands over", "[layers]
   }
 }
 
-TEST_CASE("the library does without the program", "[layers]") {
+TEST_CASE("the library does without the program", "[house][layers]") {
   for (const auto& [file, includes] : all_includes()) {
     if (!file.starts_with("bindings/")) continue;
     for (const std::string& include : includes) {
@@ -198,7 +198,7 @@ TEST_CASE("the library does without the program", "[layers]") {
   }
 }
 
-TEST_CASE("charts know numbers and pictures, not scenes and rays", "[layers]") {
+TEST_CASE("charts know numbers and pictures, not scenes and rays", "[house][layers]") {
   for (const auto& [file, includes] : all_includes()) {
     if (folder_of(file) != "runtime/chart") continue;
     for (const std::string& include : includes) {

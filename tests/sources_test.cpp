@@ -146,6 +146,24 @@ bool calls_libm(const SourceFile& file, std::size_t at) {
   return !((name == "exp" || name == "log") && includes_elementary(file));
 }
 
+// Returns the tag of the cases in a file: the folder below tests/vm, tests/compiler and tests/runtime, and below
+// tests/ elsewhere.
+std::string component_of(const std::string& path) {
+  std::vector<std::string> parts;
+  for (const fs::path& part : fs::path(path)) parts.push_back(part.string());
+  if (parts.size() == 2) return "house";
+  if (parts[1] == "bindings") return "library";
+  const bool layered = parts[1] == "vm" || parts[1] == "compiler" || parts[1] == "runtime";
+  return layered && parts.size() > 3 ? parts[2] : parts[1];
+}
+
+// Returns the text of the adjacent strings from `at` on, and moves `at` to behind them.
+std::string joined_strings(const std::vector<Token>& tokens, std::size_t& at) {
+  std::string text;
+  for (; at < tokens.size() && tokens[at].kind == Token::Kind::String; ++at) text += tokens[at].text;
+  return text;
+}
+
 }  // namespace
 
 TEST_CASE("sources: no function of libm that differs between machines", "[house]") {
@@ -185,6 +203,26 @@ TEST_CASE("sources: a call of libm is found however it is written", "[house]") {
   }
   CHECK_FALSE(is_found("pow(x, y)", "vm/number/dual-inl.h"));
   CHECK(is_found("std::pow(x, y)", "vm/number/dual-inl.h"));
+}
+
+// Catch runs hidden cases, which take minutes or fail, whenever one of their tags is asked for.
+TEST_CASE("sources: a test case has its component's tag, unless the case is hidden", "[house]") {
+  int cases = 0;
+  for (const SourceFile& file : files_of("tests")) {
+    const std::vector<Token>& tokens = file.tokens;
+    for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
+      if (tokens[i].kind != Token::Kind::Word || tokens[i].text != "TEST_CASE") continue;
+      ++cases;
+      const long line = tokens[i].line;
+      const std::string tag = "[" + component_of(file.path) + "]";
+      std::size_t at = i + 2;
+      const std::string name = joined_strings(tokens, at);
+      const std::string tags = tokens[at].is(",") ? joined_strings(tokens, ++at) : "";
+      CAPTURE(file.path, line, name, tags, tag);
+      CHECK((tags.find(tag) != std::string::npos) == (tags.find("[.") == std::string::npos));
+    }
+  }
+  CHECK(cases > 1000);
 }
 
 }  // namespace fathom::sources_test

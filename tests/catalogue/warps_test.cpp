@@ -239,7 +239,7 @@ TEST_CASE("F3: no ray is wrong at what is twisted, bent, tapered, stretched or d
 
 TEST_CASE("F4: no ray is wrong at jittered copies", "[catalogue]") { expect_right("F4", 3000); }
 
-TEST_CASE("F3 and F4: ten thousand rays at each", "[heavy]") {
+TEST_CASE("F3 and F4: ten thousand rays at each", "[catalogue][heavy]") {
   for (const Case& c : cases()) {
     INFO(c.name);
     CHECK(tally(c, 10000).wrong == 0);

@@ -41,7 +41,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("graph as JSON: each node once, with what is known of it", "[export]") {
+TEST_CASE("graph as JSON: each node once, with what is known of it", "[compiler][export]") {
   const Optimised graph;
   const json out = json::parse(graph_json(graph.scene, graph.source));
   CHECK(out["scene"] == "scene.json");
@@ -69,7 +69,7 @@ TEST_CASE("graph as JSON: each node once, with what is known of it", "[export]")
   CHECK(all["children"].size() == 3);
 }
 
-TEST_CASE("graph for Graphviz: each node once, an edge for each operand, names escaped", "[export]") {
+TEST_CASE("graph for Graphviz: each node once, an edge for each operand, names escaped", "[compiler][export]") {
   const Optimised graph;
   const std::string out = graph_dot(graph.scene, graph.source);
   CHECK(count(out, " [label=") == 5);
@@ -78,7 +78,7 @@ TEST_CASE("graph for Graphviz: each node once, an edge for each operand, names e
   CHECK(out.find(R"([label="subtraction \"a \"<b>\" \\ #1\"\nline 5"];)") != std::string::npos);
 }
 
-TEST_CASE("graph for Mermaid: the same, operands numbered", "[export]") {
+TEST_CASE("graph for Mermaid: the same, operands numbered", "[compiler][export]") {
   const Optimised graph;
   const std::string out = graph_mermaid(graph.scene, graph.source);
   CHECK(out.starts_with("flowchart TD\n"));
@@ -88,7 +88,7 @@ TEST_CASE("graph for Mermaid: the same, operands numbered", "[export]") {
   CHECK(out.find("a #quot;#lt;b#gt;#quot; \\ #35;1#quot;") != std::string::npos);
 }
 
-TEST_CASE("a graph printed with names by place keeps them when other nodes go", "[export]") {
+TEST_CASE("a graph printed with names by place keeps them when other nodes go", "[compiler][export]") {
   const Optimised graph;
   const std::string out = print_graph(graph.scene, graph.source, NodeNames::Places);
   CHECK(out.find("%sphere@2:21 = sphere radius=0.5") == 0);

@@ -127,7 +127,8 @@ std::set<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-TEST_CASE("hostile inputs are refused with a message, in the end and in little memory", "[limits][hostile]") {
+TEST_CASE("hostile inputs are refused with a message, in the end and in little memory",
+          "[runtime][limits][hostile]") {
   const std::vector<Case> cases = all_cases();
   CHECK(cases.size() >= 60);
   std::set<std::string> used;

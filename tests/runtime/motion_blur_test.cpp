@@ -55,7 +55,7 @@ struct Blurred {
   RenderResult render() const { return runtime::render(scene, options); }
 };
 
-TEST_CASE("motion blur: the film is the sum of the moments' own, each with its samples") {
+TEST_CASE("motion blur: the film is the sum of the moments' own, each with its samples", "[runtime]") {
   const Blurred blurred(16, 4, 0.4);
   const RenderResult whole = blurred.render();
   REQUIRE(whole.covered.front().covers({{0, 0, 24, 16}, {0, 16}}));
@@ -72,7 +72,7 @@ TEST_CASE("motion blur: the film is the sum of the moments' own, each with its s
   CHECK_FALSE(runtime::render(blurred.scene, still).film.hash() == sum.hash());
 }
 
-TEST_CASE("motion blur: threads, tiles, ranges of samples and crops leave no trace") {
+TEST_CASE("motion blur: threads, tiles, ranges of samples and crops leave no trace", "[runtime]") {
   Blurred blurred(16, 3, 0.4);  // runs of 4, 6 and 6 samples
   const RenderResult whole = blurred.render();
   blurred.options.threads = 3;
@@ -89,7 +89,7 @@ TEST_CASE("motion blur: threads, tiles, ranges of samples and crops leave no tra
   CHECK(sum.hash() == whole.film.hash());
 }
 
-TEST_CASE("motion blur: a render that is stopped goes on with the same bits, wherever it was") {
+TEST_CASE("motion blur: a render that is stopped goes on with the same bits, wherever it was", "[runtime]") {
   Blurred blurred(16, 4, 0.4);
   blurred.options.tile = 4;
   const std::uint64_t wanted = blurred.render().film.hash();
@@ -114,7 +114,7 @@ TEST_CASE("motion blur: a render that is stopped goes on with the same bits, whe
   CHECK(stopped >= 4);
 }
 
-TEST_CASE("motion blur: a time limit gives every pixel the first moment, and says how it ended") {
+TEST_CASE("motion blur: a time limit gives every pixel the first moment, and says how it ended", "[runtime]") {
   Blurred blurred(16, 4, 0.4);
   blurred.options.time_limit = 1e-9;
   const RenderResult result = blurred.render();
@@ -124,7 +124,7 @@ TEST_CASE("motion blur: a time limit gives every pixel the first moment, and say
   }
 }
 
-TEST_CASE("motion blur: ids are those of moments whose tables are the picture's own") {
+TEST_CASE("motion blur: ids are those of moments whose tables are the picture's own", "[runtime]") {
   const char* const appearing = R"({
     "version": 1, "params": {"time": 0}, "background": [1, 1, 1], "film": {"width": 8, "height": 8},
     "camera": {"position": [0, 0, 4]}, "objects": [{"name": "a", "type": "sphere", "radius": 1}]})";
@@ -145,7 +145,7 @@ TEST_CASE("motion blur: ids are those of moments whose tables are the picture's 
 // The mean of many images of 16 moments equals an image of 4096 moments. The images' spread gives the tolerance. With
 // 64 images, the mean square deviation of 384 pixels, in standard deviations, is 1.03 (t-distributed, 63 degrees of
 // freedom: 63/61), within 0.075. The largest deviation is seldom above 4.
-TEST_CASE("motion blur: 16 moments give the light of 4096 on average, within their noise", "[heavy]") {
+TEST_CASE("motion blur: 16 moments give the light of 4096 on average, within their noise", "[runtime][heavy]") {
   constexpr int kPictures = 64, kWidth = 24, kHeight = 16, kReferenceSpp = 8192;
   Blurred reference(kReferenceSpp, 4096, 0.5, 1000);
   reference.options.layers = {};

@@ -21,7 +21,7 @@ const char* const kScenes[] = {
 
 }  // namespace
 
-TEST_CASE("native code leaves no trace in pictures", "[native][render]") {
+TEST_CASE("native code leaves no trace in pictures", "[runtime][native][render]") {
   for (const char* text : kScenes) {
     CAPTURE(text);
     const compiler::CompiledScene scene = compiled(text);
@@ -34,7 +34,7 @@ TEST_CASE("native code leaves no trace in pictures", "[native][render]") {
   }
 }
 
-TEST_CASE("a field has native code only for enough evaluations and without regions", "[native]") {
+TEST_CASE("a field has native code only for enough evaluations and without regions", "[runtime][native]") {
   const compiler::CompiledScene scene = compiled(kScenes[1]);
   runtime::Field field = runtime::make_field(scene);
   runtime::add_native_code(field, 100);

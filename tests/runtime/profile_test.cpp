@@ -32,7 +32,7 @@ RenderOptions options_of(int width, int height, int spp) {
   return options;
 }
 
-TEST_CASE("profile: the same picture and counts with and without", "[render]") {
+TEST_CASE("profile: the same picture and counts with and without", "[runtime][render]") {
   const auto scene = scene_of(kScene);
   RenderOptions options = options_of(70, 45, 4);
   options.threads = 1;
@@ -49,7 +49,7 @@ TEST_CASE("profile: the same picture and counts with and without", "[render]") {
   CHECK(profiled.stats.march.lanes == plain.stats.march.lanes);
 }
 
-TEST_CASE("profile: every stage takes time, and all of them a thread's", "[render]") {
+TEST_CASE("profile: every stage takes time, and all of them a thread's", "[runtime][render]") {
   const auto scene = scene_of(kScene);
   for (const int threads : {1, 2}) {
     RenderOptions options = options_of(160, 90, test::scaled_cases(16));
@@ -74,7 +74,7 @@ TEST_CASE("profile: every stage takes time, and all of them a thread's", "[rende
   }
 }
 
-TEST_CASE("profile: instructions are those of the program, and registers are filled with rays", "[render]") {
+TEST_CASE("profile: instructions are those of the program, and registers are filled with rays", "[runtime][render]") {
   const auto scene = scene_of(kScene);
   for (const Marching marching : {Marching{}, Marching{.method = Method::Sphere, .precision = Precision::Double},
                                   Marching{.method = Method::Certified}}) {
@@ -89,7 +89,7 @@ TEST_CASE("profile: instructions are those of the program, and registers are fil
   }
 }
 
-TEST_CASE("profile: a wider register has more lanes to spare", "[render]") {
+TEST_CASE("profile: a wider register has more lanes to spare", "[runtime][render]") {
   const auto scene = scene_of(kScene);
   RenderOptions options = options_of(64, 36, 4);
   options.threads = 1;
@@ -109,7 +109,7 @@ TEST_CASE("profile: a wider register has more lanes to spare", "[render]") {
   REQUIRE(vm::force_isa(in_use));
 }
 
-TEST_CASE("profile: the cost of all pixels is what was counted, for any threads and tiles", "[render]") {
+TEST_CASE("profile: the cost of all pixels is what was counted, for any threads and tiles", "[runtime][render]") {
   const auto scene = scene_of(kScene);
   std::vector<double> reference;
   for (const int threads : {1, 2, 3}) {

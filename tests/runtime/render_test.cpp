@@ -46,12 +46,12 @@ std::string furnace(double albedo) {
       "objects": [{"type": "sphere", "radius": 1, "material": "lamp"}])";
 }
 
-TEST_CASE("render: white furnace, 1/(1 - albedo)", "[heavy][render]") {
+TEST_CASE("render: white furnace, 1/(1 - albedo)", "[runtime][heavy][render]") {
   expect_mean(render(scene_of(furnace(0.5)), options_of(64, 64, 64)), 2);
   expect_mean(render(scene_of(furnace(0.8)), options_of(64, 64, 128)), 5);
 }
 
-TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy][render]") {
+TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[runtime][heavy][render]") {
   const auto scene = scene_of(furnace(0.8));
   for (const int bounces : {0, 1, 3, 30}) {
     RenderOptions options = options_of(48, 48, 64);
@@ -63,7 +63,7 @@ TEST_CASE("render: Russian roulette keeps the mean wherever it begins", "[heavy]
   }
 }
 
-TEST_CASE("render: paths that are cut off bring what they met until then", "[render]") {
+TEST_CASE("render: paths that are cut off bring what they met until then", "[runtime][render]") {
   RenderOptions options = options_of(16, 16, 4);
   options.max_depth = 2;
   const Estimate found = estimate(render(scene_of(furnace(0.8)), options).film);
@@ -71,7 +71,7 @@ TEST_CASE("render: paths that are cut off bring what they met until then", "[ren
   CHECK(found.sigma < 1e-6);
 }
 
-TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render][heavy]") {
+TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[runtime][render][heavy]") {
   // The floor's radiance under the lamp is albedo E / pi. The orthographic camera looks from the side at a small spot
   // below the lamp and sees nothing else. The spot is so small that E varies by 1e-4.
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [3, 1, 0], "target": [0, 0, 0],
@@ -88,7 +88,7 @@ TEST_CASE("render: a ball lamp over a floor, E = pi L (R/d)^2", "[render][heavy]
   CHECK(found.sigma <= 5e-3 * radiance);
 }
 
-TEST_CASE("render: glass and mirrors vanish in an even light", "[render]") {
+TEST_CASE("render: glass and mirrors vanish in an even light", "[runtime][render]") {
   for (const char* material : {R"({"type": "transparent", "ior": 1.5})", R"({"type": "specular"})",
                                R"({"type": "diffuse", "color": [1, 1, 1]})"}) {
     const auto scene = scene_of(std::string(R"("camera": {"position": [0, 0, 3], "fov": 60}, "background": [1, 1, 1],
@@ -104,7 +104,7 @@ TEST_CASE("render: glass and mirrors vanish in an even light", "[render]") {
   }
 }
 
-TEST_CASE("render: glass absorbs along the way through it", "[render]") {
+TEST_CASE("render: glass absorbs along the way through it", "[runtime][render]") {
   // A slab without refraction, perpendicular to the view: exp(-absorption * thickness).
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 0, 3], "width": 0.5},
       "background": [1, 1, 1],
@@ -116,7 +116,7 @@ TEST_CASE("render: glass absorbs along the way through it", "[render]") {
   CHECK(radiance.z == Approx(1).epsilon(1e-4));
 }
 
-TEST_CASE("render: the background is linear in the sine of the elevation, and up is up", "[render]") {
+TEST_CASE("render: the background is linear in the sine of the elevation, and up is up", "[runtime][render]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 0, 3], "fov": 90},
       "background": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
       "objects": [{"type": "sphere", "radius": 0.1, "translate": [0, 0, 100]}])");
@@ -129,7 +129,7 @@ TEST_CASE("render: the background is linear in the sine of the elevation, and up
   CHECK(result.stats.primary_hits == 0);
 }
 
-TEST_CASE("render: what lies first along the camera's rays", "[render]") {
+TEST_CASE("render: what lies first along the camera's rays", "[runtime][render]") {
   const auto scene = scene_of(R"("camera": {"type": "orthographic", "position": [0, 0, 3], "width": 4},
       "materials": {"m": {"type": "diffuse", "color": [0.2, 0.4, 0.6]}},
       "objects": [{"type": "box", "half_size": [1, 1, 0.5], "material": "m"}])");
@@ -154,7 +154,7 @@ const char* const kVaried = R"("camera": {"position": [0, 1.2, 4], "target": [0,
                  "material": "mirror"},
                 {"type": "box", "half_size": [0.3, 0.05, 0.3], "translate": [0, 2, 0], "material": "lamp"}])";
 
-TEST_CASE("render: threads and tiles leave no trace in the picture", "[render][threads]") {
+TEST_CASE("render: threads and tiles leave no trace in the picture", "[runtime][render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(70, 45, 4);
   options.threads = 1;
@@ -174,7 +174,7 @@ TEST_CASE("render: threads and tiles leave no trace in the picture", "[render][t
   CHECK(render(scene, options).film.hash() != reference.film.hash());
 }
 
-TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[render]") {
+TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[runtime][render]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(20, 12, 4);
   const Stats both = render(scene, options).stats;
@@ -189,7 +189,7 @@ TEST_CASE("render: rays are the camera's, towards lights, or after a bounce", "[
   CHECK(render(scene, options).stats.bounce_rays == 0);
 }
 
-TEST_CASE("render: clamping takes light from long paths only, and never adds any", "[render]") {
+TEST_CASE("render: clamping takes light from long paths only, and never adds any", "[runtime][render]") {
   const auto scene = scene_of(kVaried);
   const auto film_of = [&](std::optional<int> max_depth, std::optional<double> clamp) {
     RenderOptions options = options_of(20, 12, 16);
@@ -213,7 +213,7 @@ TEST_CASE("render: clamping takes light from long paths only, and never adds any
   CHECK(estimate(clamped).mean > estimate(two).mean);
 }
 
-TEST_CASE("render: a sample clamp limits every sample, and leaves the samples below it", "[render]") {
+TEST_CASE("render: a sample clamp limits every sample, and leaves the samples below it", "[runtime][render]") {
   const auto scene = scene_of(kVaried);
   for (const compiler::FilterKind filter : {compiler::FilterKind::Box, compiler::FilterKind::Mitchell}) {
     RenderOptions options = options_of(20, 12, 2);
@@ -238,7 +238,8 @@ TEST_CASE("render: a sample clamp limits every sample, and leaves the samples be
   }
 }
 
-TEST_CASE("render: tiles take every pixel once, and a small picture has enough of them for all threads", "[render]") {
+TEST_CASE("render: tiles take every pixel once, and a small picture has enough of them for all threads",
+          "[runtime][render]") {
   CHECK(tile_side(640, 360, 16, 2) == 16);
   CHECK(tile_side(64, 36, 16, 2) < 16);
   CHECK(tile_side(3, 2, 1024, 32) == 1);
@@ -258,7 +259,7 @@ TEST_CASE("render: tiles take every pixel once, and a small picture has enough o
   }
 }
 
-TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[render]") {
+TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[runtime][render]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(48, 27, 3);
   options.layers = kAllLayers;
@@ -280,7 +281,8 @@ TEST_CASE("render: a crop has the bits of the picture there, in every layer", "[
   }
 }
 
-TEST_CASE("render: ranges of samples add up to the whole, and what was stopped goes on", "[render][threads]") {
+TEST_CASE("render: ranges of samples add up to the whole, and what was stopped goes on",
+          "[runtime][render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(40, 24, 24);
   options.layers = kAllLayers;
@@ -319,7 +321,7 @@ TEST_CASE("render: ranges of samples add up to the whole, and what was stopped g
   }
 }
 
-TEST_CASE("render: a position lies on the surface that its ids name", "[render]") {
+TEST_CASE("render: a position lies on the surface that its ids name", "[runtime][render]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 0, 5]},
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "diffuse", "color": [0, 0, 1]}},
       "objects": [{"name": "ball", "type": "sphere", "radius": 1, "material": "a"},
@@ -344,7 +346,7 @@ TEST_CASE("render: a position lies on the surface that its ids name", "[render]"
   CHECK(balls < 900);
 }
 
-TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {
+TEST_CASE("render: no ray is lost in a scene of everything", "[runtime][render]") {
   const RenderResult result = render(scene_of(kVaried), options_of(160, 90, 8));
   CHECK(result.stats.march.invalid == 0);
   CHECK(result.stats.march.exhausted == 0);
@@ -352,7 +354,7 @@ TEST_CASE("render: no ray is lost in a scene of everything", "[render]") {
   CHECK(result.stats.primary_rays == 160u * 90u * 8u);
 }
 
-TEST_CASE("render: progress ends at one, and a cancelled render returns", "[render][threads]") {
+TEST_CASE("render: progress ends at one, and a cancelled render returns", "[runtime][render][threads]") {
   const auto scene = scene_of(kVaried);
   RenderOptions options = options_of(64, 64, 1);
   double last = 0;
@@ -370,7 +372,7 @@ TEST_CASE("render: progress ends at one, and a cancelled render returns", "[rend
   CHECK(nothing.stats.primary_rays == 0);
 }
 
-TEST_CASE("render: options overrule the scene, which overrules the defaults", "[render]") {
+TEST_CASE("render: options overrule the scene, which overrules the defaults", "[runtime][render]") {
   const auto scene = scene_of(R"("film": {"width": 30, "height": 20}, "render": {"spp": 7, "rr_depth": 3},
       "objects": [{"type": "sphere", "radius": 1}])");
   RenderOptions options;
@@ -388,7 +390,7 @@ TEST_CASE("render: options overrule the scene, which overrules the defaults", "[
 // Regression: rays leaving the top of a huge box hit the box again. Float resolves its surface only to 5e-4
 // (coordinates of 10^4 cancel), and the rays started closer than this. A plane is the same floor without the large
 // coordinates.
-TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[render][heavy]") {
+TEST_CASE("render: a floor that is the top of a huge solid is as bright as a plane", "[runtime][render][heavy]") {
   const auto with_floor = [](const std::string& floor) {
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 1.5, 4], "target": [0, 0.5, 0]},
         "objects": [)" +
@@ -406,7 +408,7 @@ TEST_CASE("render: a floor that is the top of a huge solid is as bright as a pla
 // Regression: a ball 1e5 from the origin was rendered in three pieces and without a shadow, because float steps near
 // the surface were longer than the ball. The programs now have their origin near the scene, and equal those of the
 // scene at zero.
-TEST_CASE("render: a scene far from the origin looks as it does there", "[render][heavy]") {
+TEST_CASE("render: a scene far from the origin looks as it does there", "[runtime][render][heavy]") {
   const auto at = [](double x) {
     const std::string x0 = std::to_string(x), x1 = std::to_string(x + 1.5);
     return scene_of(R"("background": [1, 1, 1], "camera": {"position": [)" + x0 + R"(, 1, 5], "target": [)" + x0 +
@@ -442,7 +444,7 @@ TEST_CASE("render: a scene far from the origin looks as it does there", "[render
 }
 
 // Regression: a plane cut off every scene at ten thousand units from the camera.
-TEST_CASE("render: a large scene with a plane is not cut off", "[render]") {
+TEST_CASE("render: a large scene with a plane is not cut off", "[runtime][render]") {
   const auto scene =
       scene_of(R"("background": [1, 1, 1], "camera": {"position": [0, 15000, 40000], "target": [0, 5000, 0]},
       "objects": [{"type": "plane", "normal": [0, 1, 0]}, {"type": "sphere", "radius": 5000, "translate": [0, 5000, 0]}])");

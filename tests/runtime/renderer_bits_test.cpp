@@ -53,7 +53,8 @@ Bits bits_of(const std::string& render) {
           fmt::format("{:016x}", file.render.film.hash())};
 }
 
-TEST_CASE("renderer bits: what changes them raises kRendererBits of runtime/cli/picture/render_identity.h") {
+TEST_CASE("renderer bits: what changes them raises kRendererBits of runtime/cli/picture/render_identity.h",
+          "[runtime]") {
   const std::filesystem::path path = std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/golden/renderer/bits.txt";
   std::map<std::string, Bits> known;
   std::istringstream lines(test::read_file(path));

@@ -117,7 +117,7 @@ Estimate load(const fs::path& scene) {
 
 }  // namespace
 
-TEST_CASE("scenes open with a comment and compile without a word", "[scenes][released]") {
+TEST_CASE("scenes open with a comment and compile without a word", "[runtime][scenes][released]") {
   REQUIRE(scene_files().size() >= 5);
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());
@@ -126,7 +126,7 @@ TEST_CASE("scenes open with a comment and compile without a word", "[scenes][rel
   }
 }
 
-TEST_CASE("pictures of the scenes agree with their stored means", "[scenes][heavy]") {
+TEST_CASE("pictures of the scenes agree with their stored means", "[runtime][scenes][heavy]") {
   const char* updated = std::getenv("FATHOM_UPDATE_IMAGES");
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());

@@ -88,7 +88,7 @@ void check_all(const std::string& scene) {
   }
 }
 
-TEST_CASE("shared graphs: every verb visits a node that is used in many ways once", "[limits][released]") {
+TEST_CASE("shared graphs: every verb visits a node that is used in many ways once", "[runtime][limits][released]") {
   const std::string ball = R"({"type": "sphere", "radius": 1, "material": "lamp"})";
   check_all(doublings(ball, R"({"type": "union", "of": [$, $]})"));
   check_all(doublings(R"({"type": "union", "of": [{"type": "sphere", "radius": 1, "material": "glass"},
@@ -251,7 +251,7 @@ int rendered(std::uint64_t first, std::uint64_t last) {
   return done;
 }
 
-TEST_CASE("shared graphs: they are drawn of every type of node", "[limits]") {
+TEST_CASE("shared graphs: they are drawn of every type of node", "[runtime][limits]") {
   for (const compiler::NodeSpec& row : compiler::node_table()) {
     if (row.category == compiler::Category::Function || row.category == compiler::Category::Internal) continue;
     INFO(row.name);
@@ -259,9 +259,11 @@ TEST_CASE("shared graphs: they are drawn of every type of node", "[limits]") {
   }
 }
 
-TEST_CASE("shared graphs: random ones end in every verb", "[limits]") { CHECK(rendered(1, 5) >= 2); }
+TEST_CASE("shared graphs: random ones end in every verb", "[runtime][limits]") { CHECK(rendered(1, 5) >= 2); }
 
-TEST_CASE("shared graphs: many random ones end in every verb", "[limits][heavy]") { CHECK(rendered(100, 120) >= 8); }
+TEST_CASE("shared graphs: many random ones end in every verb", "[runtime][limits][heavy]") {
+  CHECK(rendered(100, 120) >= 8);
+}
 
 }  // namespace
 

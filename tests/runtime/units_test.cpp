@@ -4,7 +4,7 @@
 namespace fathom::runtime::units_test {
 namespace {
 
-TEST_CASE("units: rounds follow one another, short at first, and never long") {
+TEST_CASE("units: rounds follow one another, short at first, and never long", "[runtime]") {
   for (const SampleRange samples : {SampleRange{0, 1}, {0, 16}, {0, 17}, {0, 5000}, {3, 9}, {100, 1000}, {31, 33}}) {
     std::uint32_t at = samples.first;
     for (const SampleRange round : split_into_rounds(samples)) {
@@ -22,7 +22,7 @@ TEST_CASE("units: rounds follow one another, short at first, and never long") {
   CHECK(split_into_rounds({512, 1024}, 1).front() == SampleRange{512, 513});
 }
 
-TEST_CASE("units: a queue gives what is left, each sample once") {
+TEST_CASE("units: a queue gives what is left, each sample once", "[runtime]") {
   const PixelRect area{3, 5, 50, 31};
   Coverage covered;
   covered.add({{3, 5, 20, 31}, {0, 20}});
@@ -44,7 +44,7 @@ TEST_CASE("units: a queue gives what is left, each sample once") {
   }
 }
 
-TEST_CASE("units: the whole picture's first samples come before any pixel's last") {
+TEST_CASE("units: the whole picture's first samples come before any pixel's last", "[runtime]") {
   const Coverage nothing;
   UnitQueue queue({0, 0, 64, 64}, 16, split_into_rounds({0, 64}), nothing);
   std::uint32_t last = 0;

@@ -24,7 +24,7 @@ glm::dvec3 place(const AreaLight& area_light, glm::dvec3 q) {
   return area_light.rotation * q + area_light.translation;
 }
 
-TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
+TEST_CASE("lamps: every shape, where its transforms put it", "[analysis][lamps]") {
   const CompiledScene scene = lit(R"(
       {"type": "sphere", "radius": 0.5, "scale": 2, "translate": [1, 2, 3], "material": "glow"},
       {"type": "box", "half_size": [1, 2, 3], "rotate": [0, 90, 0], "material": "glow"},
@@ -47,7 +47,7 @@ TEST_CASE("lamps: every shape, where its transforms put it", "[lamps]") {
   CHECK((pill.shape == AreaLight::Shape::Capsule && pill.radius == 0.5 && pill.half_height == 1));
 }
 
-TEST_CASE("lamps: a quad stands in a plane of its own", "[lamps]") {
+TEST_CASE("lamps: a quad stands in a plane of its own", "[analysis][lamps]") {
   const CompiledScene scene =
       lit(R"({"type": "quad", "a": [1, 5, 1], "b": [-1, 5, 1], "c": [-1, 5, -2], "d": [1, 5, -1],
       "thickness": 0.01, "material": "glow", "scale": 2, "rotate": [20, 30, 40], "translate": [0, 1, 0]})");
@@ -66,7 +66,7 @@ TEST_CASE("lamps: a quad stands in a plane of its own", "[lamps]") {
   CHECK(std::abs(glm::determinant(quad.rotation) - 1) < 1e-12);
 }
 
-TEST_CASE("lamps: what is altered, cut, blended or dark is none", "[lamps]") {
+TEST_CASE("lamps: what is altered, cut, blended or dark is none", "[analysis][lamps]") {
   const std::string ball = R"({"type": "sphere", "radius": 1, "material": "glow"})";
   CHECK(area_lights_in(ball) == 1);
   CHECK(area_lights_in(R"({"type": "sphere", "radius": 1, "material": "dark"})") == 0);
@@ -86,7 +86,7 @@ TEST_CASE("lamps: what is altered, cut, blended or dark is none", "[lamps]") {
         1);
 }
 
-TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]") {
+TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[analysis][lamps]") {
   CHECK(area_lights_in(R"({"type": "union", "material": "glow", "of": [
       {"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "dull"},
       {"type": "sphere", "radius": 1, "translate": [6, 0, 0]}]})") == 2);
@@ -98,7 +98,7 @@ TEST_CASE("lamps: paint further in wins, and each place is one lamp", "[lamps]")
             twice + R"(, {"type": "shear", "shift": [2, 0], "of": {"type": "box", "half_size": [1, 1, 1]}})") == 1);
 }
 
-TEST_CASE("lamps: what light may pass is none", "[lamps]") {
+TEST_CASE("lamps: what light may pass is none", "[analysis][lamps]") {
   const auto count = [](const std::string& material) {
     const Source source("scene.json",
                         R"({"version": 1, "materials": {"m": {"type": "principled", "emission": [1, 1, 1], )" +
@@ -114,7 +114,7 @@ TEST_CASE("lamps: what light may pass is none", "[lamps]") {
   CHECK(count(R"("opacity": "0.5 + x")") == 0);
 }
 
-TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[lamps]") {
+TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[analysis][lamps]") {
   const CompiledScene scene = lit(R"({"type": "sphere", "radius": 1, "translate": [1e5, 0, 0], "material": "glow"},
       {"type": "quad", "a": [99999, 3, 0], "b": [100001, 3, 0], "c": [100001, 3, 2], "d": [99999, 3, 2],
        "thickness": 0.1, "material": "glow"})");
@@ -124,7 +124,7 @@ TEST_CASE("lamps: far from zero they stand in the programs' coordinates", "[lamp
   CHECK(glm::length(scene.area_lights[1].translation + scene.origin - glm::dvec3(1e5, 3, 1)) < 1e-9);
 }
 
-TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[lamps]") {
+TEST_CASE("lamps: a graph that stands for very many ends at the limit", "[analysis][lamps]") {
   std::string nodes = R"("n0": {"type": "sphere", "radius": 0.1})";
   for (int i = 1; i <= 17; ++i) {
     nodes += fmt::format(

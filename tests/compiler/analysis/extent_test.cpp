@@ -33,13 +33,13 @@ constexpr const char* kGround = R"({"type": "plane", "normal": [0, 1, 0], "offse
 
 }  // namespace
 
-TEST_CASE("extent: the union of what ends", "[extent]") {
+TEST_CASE("extent: the union of what ends", "[analysis][extent]") {
   check_box(kBall, {4, -1, -1}, {6, 1, 1});
   check_box(std::string(kBall) + R"(, {"type": "box", "half_size": [1, 2, 3]})", {-1, -2, -3}, {6, 2, 3});
   check_box(R"({"type": "sphere", "radius": 1, "translate": [1e6, 0, 0]})", {1e6 - 1, -1, -1}, {1e6 + 1, 1, 1});
 }
 
-TEST_CASE("extent: grounds and endless copies are left out, in groups that are moved, too", "[extent]") {
+TEST_CASE("extent: grounds and endless copies are left out, in groups that are moved, too", "[analysis][extent]") {
   const std::string both = std::string(kGround) + ", " + kBall;
   check_box(both, {4, -1, -1}, {6, 1, 1});
   check_box(R"({"type": "union", "of": [)" + both + R"(], "translate": [0, 7, 0]})", {4, 6, -1}, {6, 8, 1});
@@ -47,7 +47,8 @@ TEST_CASE("extent: grounds and endless copies are left out, in groups that are m
             {4, -1, -1}, {6, 1, 1});
 }
 
-TEST_CASE("extent: a pit is what there is to see of a ground; what only has no end has no extent", "[extent]") {
+TEST_CASE("extent: a pit is what there is to see of a ground; what only has no end has no extent",
+          "[analysis][extent]") {
   check_box(std::string(R"({"type": "subtraction", "of": [)") + kGround + ", " + kBall + "]}", {4, -1, -1},
             {6, 1, 1});
   CHECK(extent_of(kGround).empty());

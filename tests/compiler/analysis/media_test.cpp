@@ -20,7 +20,7 @@ double value(const Medium& medium, glm::dvec3 place) {
 const char* const kGlassAndWater = R"("table": {"type": "diffuse"}, "glass": {"type": "transparent"},
     "water": {"type": "transparent", "ior": 1.33})";
 
-TEST_CASE("media: one for each transparent material, opaque ones have none", "[compiler]") {
+TEST_CASE("media: one for each transparent material, opaque ones have none", "[analysis]") {
   const CompiledScene scene = with(kGlassAndWater, R"({"type": "sphere", "radius": 1, "material": "glass"},
         {"type": "sphere", "radius": 1, "translate": [5, 0, 0], "material": "glass"},
         {"type": "sphere", "radius": 1, "translate": [9, 0, 0], "material": "water"},
@@ -37,7 +37,7 @@ TEST_CASE("media: one for each transparent material, opaque ones have none", "[c
   CHECK(with(R"("m": {"type": "diffuse"})", R"({"type": "sphere", "radius": 1, "material": "m"})").media.empty());
 }
 
-TEST_CASE("media: what is opaque takes its place from glass, and the first glass from the second", "[compiler]") {
+TEST_CASE("media: what is opaque takes its place from glass, and the first glass from the second", "[analysis]") {
   const std::string bodies = R"({"type": "sphere", "radius": 1, "material": "glass"},
       {"type": "sphere", "radius": 1, "translate": [1, 0, 0], "material": "water"},
       {"type": "plane", "normal": [0, 1, 0], "offset": -0.5, "material": "table"})";
@@ -58,7 +58,7 @@ TEST_CASE("media: what is opaque takes its place from glass, and the first glass
   CHECK(value(turned.media[1], {0.5, 0, 0}) < 0);
 }
 
-TEST_CASE("media: bodies are told apart within moved groups", "[compiler]") {
+TEST_CASE("media: bodies are told apart within moved groups", "[analysis]") {
   const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "translate": [3, 0, 0], "of": [
       {"type": "sphere", "radius": 1, "material": "glass"},
       {"type": "box", "half_size": [2, 0.2, 2], "material": "table"}]})");
@@ -69,7 +69,7 @@ TEST_CASE("media: bodies are told apart within moved groups", "[compiler]") {
 }
 
 // Regression: the part without a material of its own was taken for part of its neighbour.
-TEST_CASE("media: a body that has its material from above", "[compiler]") {
+TEST_CASE("media: a body that has its material from above", "[analysis]") {
   const CompiledScene scene = with(kGlassAndWater, R"({"type": "union", "material": "glass", "of": [
       {"type": "sphere", "radius": 1},
       {"type": "sphere", "radius": 1, "translate": [5, 0, 0], "material": "table"}]})");

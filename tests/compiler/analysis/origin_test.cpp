@@ -66,7 +66,7 @@ dvec3 origin_of(const std::string& objects, const std::string& camera = "[0, 0, 
 
 }  // namespace
 
-TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[origin]") {
+TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[analysis][origin]") {
   for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
@@ -85,7 +85,7 @@ TEST_CASE("origin: a moved scene is at p what the scene is at p + origin", "[ori
   }
 }
 
-TEST_CASE("origin: a scene moved far off and back is as it was, to what a double holds there", "[origin]") {
+TEST_CASE("origin: a scene moved far off and back is as it was, to what a double holds there", "[analysis][origin]") {
   for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene before = scene_of(seed);
     Random random(seed);
@@ -104,7 +104,8 @@ TEST_CASE("origin: a scene moved far off and back is as it was, to what a double
 
 // Moving back makes a graph exact again if its branches end in transforms and planes. A node that keeps the scene's
 // coordinates below it reports a larger cancellation.
-TEST_CASE("origin: float errors of a scene brought back from far are within the bound", "[origin][bounds]") {
+TEST_CASE("origin: float errors of a scene brought back from far are within the bound",
+          "[analysis][origin][bounds]") {
   vm::Workspace workspace;
   int fine = 0;
   for (int seed = 0; seed < scaled_cases(400); ++seed) {
@@ -135,7 +136,7 @@ TEST_CASE("origin: float errors of a scene brought back from far are within the 
   CHECK(fine > scaled_cases(300));
 }
 
-TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {
+TEST_CASE("origin: it is zero unless the scene is far from there", "[analysis][origin]") {
   CHECK(origin_of(at("0")) == dvec3(0));
   CHECK(origin_of(at("10")) == dvec3(0));
   CHECK(origin_of(at("100000")) == dvec3(100000, 0, 0));
@@ -145,14 +146,14 @@ TEST_CASE("origin: it is zero unless the scene is far from there", "[origin]") {
 }
 
 // A small object next to a large one; a house in a town.
-TEST_CASE("origin: what the camera is close to counts when it is part of the scene", "[origin]") {
+TEST_CASE("origin: what the camera is close to counts when it is part of the scene", "[analysis][origin]") {
   CHECK(origin_of(at("0"), R"([1, 3, 0.01], "target": [1, 3, 0])") == dvec3(1, 3, 0));
   CHECK(origin_of(at("0") + "," + at("1000"), R"([1000, 3, 5], "target": [1000, 3, 0])") == dvec3(1000, 0, 0));
   // A camera target that only gives a direction.
   CHECK(origin_of(at("0"), R"([0, 3, 100], "target": [0, 3, 99])") == dvec3(0));
 }
 
-TEST_CASE("origin: a formula keeps its coordinates, and a steep one the scene's origin", "[origin]") {
+TEST_CASE("origin: a formula keeps its coordinates, and a steep one the scene's origin", "[analysis][origin]") {
   const auto near_formula = [](const std::string& slope) {
     return origin_of(R"({"type": "expression", "half_size": [1, 1, 1], "formula": ")" + slope + R"(*x - 0.25"})",
                      R"([0.7, 0.7, 0.71], "target": [0.7, 0.7, 0.7])");
@@ -162,7 +163,7 @@ TEST_CASE("origin: a formula keeps its coordinates, and a steep one the scene's 
 }
 
 // A camera at x that looks along an endless floor shows geometry near x, whatever else is in the scene.
-TEST_CASE("origin: of an endless scene the camera's view counts", "[origin]") {
+TEST_CASE("origin: of an endless scene the camera's view counts", "[analysis][origin]") {
   const std::string floor = R"({"type": "plane", "normal": [0, 1, 0]})";
   const std::string there = R"([100000, 2, 5], "target": [100000, 1, 0])";
   CHECK(origin_of(floor) == dvec3(0));
@@ -180,7 +181,7 @@ TEST_CASE("origin: of an endless scene the camera's view counts", "[origin]") {
                   R"([0, 2, 0], "target": [10000, 0, 0])") == dvec3(0));
 }
 
-TEST_CASE("origin: a scene far off becomes the program of the scene at zero", "[origin]") {
+TEST_CASE("origin: a scene far off becomes the program of the scene at zero", "[analysis][origin]") {
   const std::string wall = R"(, {"type": "plane", "normal": [1, 0, 0], "offset": )";
   const std::string sail = R"(, {"type": "triangle", "thickness": 0.125, "a": [)";
   const auto scene = [&](double x) {
@@ -206,7 +207,7 @@ TEST_CASE("origin: a scene far off becomes the program of the scene at zero", "[
   }
 }
 
-TEST_CASE("origin: what repeats without end is met where the camera is", "[origin]") {
+TEST_CASE("origin: what repeats without end is met where the camera is", "[analysis][origin]") {
   const std::string camera = R"({"version": 1, "camera": {"position": [100000.25, 0, 5], "target": [100000, 0, 0]},
       "objects": [)";
   const char* const nodes[] = {
@@ -235,7 +236,7 @@ TEST_CASE("origin: what repeats without end is met where the camera is", "[origi
   }
 }
 
-TEST_CASE("origin: what keeps the scene's coordinates says how coarse it is", "[origin]") {
+TEST_CASE("origin: what keeps the scene's coordinates says how coarse it is", "[analysis][origin]") {
   // A rotation about an axis a hundred thousand units away.
   const auto scene = compiled_objects(R"({"type": "twist", "turn": 1e-5, "of": {"type": "sphere", "radius": 1,
       "translate": [1e5, 0, 0]}}, {"type": "elongate", "half_size": [0, 0.5, 0], "of": {"type": "sphere",

@@ -38,7 +38,7 @@ Twisted twisted(double lipschitz_factor) {
 
 }  // namespace
 
-TEST_CASE("a sound twist holds, and comes close to its constant", "[probe]") {
+TEST_CASE("a sound twist holds, and comes close to its constant", "[analysis][probe]") {
   const Twisted t = twisted(1);
   const std::vector<ProbeRow> rows = probe(t.scene, {}, kOptions);
   REQUIRE(rows.size() == 2);
@@ -52,7 +52,7 @@ TEST_CASE("a sound twist holds, and comes close to its constant", "[probe]") {
   CHECK(culprits(t.scene, rows).empty());
 }
 
-TEST_CASE("a twist whose constant is halved is named, and not what lies above it", "[probe]") {
+TEST_CASE("a twist whose constant is halved is named, and not what lies above it", "[analysis][probe]") {
   const Twisted t = twisted(0.5);
   const std::vector<ProbeRow> rows = probe(t.scene, {}, kOptions);
   CHECK(rows[0].broken());
@@ -62,7 +62,7 @@ TEST_CASE("a twist whose constant is halved is named, and not what lies above it
   CHECK(guilty[0]->place.type == "twist");
 }
 
-TEST_CASE("what has no end is probed where the scene is", "[probe]") {
+TEST_CASE("what has no end is probed where the scene is", "[analysis][probe]") {
   Scene scene;
   const double up[] = {0, 1, 0, 0};
   scene.root = scene.graph.add(Kind::Plane, up, {});
@@ -74,7 +74,7 @@ TEST_CASE("what has no end is probed where the scene is", "[probe]") {
   CHECK(std::abs(rows[0].at.z) <= 11);
 }
 
-TEST_CASE("a formula whose constant is halved is named, and an estimate never breaks", "[probe]") {
+TEST_CASE("a formula whose constant is halved is named, and an estimate never breaks", "[analysis][probe]") {
   for (const double certified : {1.0, 0.0}) {
     Scene scene;
     Graph& graph = scene.graph;
@@ -94,7 +94,7 @@ TEST_CASE("a formula whose constant is halved is named, and an estimate never br
   }
 }
 
-TEST_CASE("all rows after the first take no more work than is allowed", "[probe][limits]") {
+TEST_CASE("all rows after the first take no more work than is allowed", "[analysis][probe][limits]") {
   Scene scene;
   Graph& graph = scene.graph;
   NodeMaker maker(graph);
@@ -128,7 +128,7 @@ TEST_CASE("all rows after the first take no more work than is allowed", "[probe]
   CHECK(probe(scene, {}, options).back().points == 64);
 }
 
-TEST_CASE("results are the same for any number of threads", "[probe]") {
+TEST_CASE("results are the same for any number of threads", "[analysis][probe]") {
   const Twisted t = twisted(1);
   ProbeOptions options{.points = 20000, .reach = 10, .threads = 1};
   const std::vector<ProbeRow> one = probe(t.scene, {}, options);

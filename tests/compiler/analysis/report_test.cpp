@@ -40,7 +40,7 @@ Report report_of(const std::string& objects) {
 
 }  // namespace
 
-TEST_CASE("the report has a row for each object, by its own field", "[report]") {
+TEST_CASE("the report has a row for each object, by its own field", "[analysis][report]") {
   const Report report = report_of(R"({"type": "sphere", "radius": 1},
     {"name": "both", "type": "intersection", "of": [
       {"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 1, 1]}]},
@@ -63,7 +63,7 @@ TEST_CASE("the report has a row for each object, by its own field", "[report]") 
   CHECK(report.objects[2].facts.box.lo.x == Approx(9 - radius));
 }
 
-TEST_CASE("a steep part within an object counts, though it is levelled", "[report]") {
+TEST_CASE("a steep part within an object counts, though it is levelled", "[analysis][report]") {
   const Report report = report_of(R"({"type": "union", "of": [{"type": "sphere", "radius": 1},
     {"name": "rope", "type": "twist", "turn": 90, "of": {"type": "box", "half_size": [1, 3, 1]}}]})");
   REQUIRE(report.objects.size() == 1);
@@ -73,7 +73,7 @@ TEST_CASE("a steep part within an object counts, though it is levelled", "[repor
   CHECK(report.objects[0].costliest->place.name == "rope");
 }
 
-TEST_CASE("costs along a path multiply to the whole", "[report]") {
+TEST_CASE("costs along a path multiply to the whole", "[analysis][report]") {
   const Report report = report_of(R"_({"type": "twist", "turn": 10, "of": {"type": "displacement",
     "formula": "sin(20*x)/5", "of": {"type": "box", "half_size": [1, 1, 1]}}})_");
   REQUIRE(report.objects[0].costliest);
@@ -81,7 +81,7 @@ TEST_CASE("costs along a path multiply to the whole", "[report]") {
   CHECK(report.objects[0].costliest->times < report.objects[0].lipschitz);
 }
 
-TEST_CASE("the nodes that are estimates are named, not what is made of them", "[report]") {
+TEST_CASE("the nodes that are estimates are named, not what is made of them", "[analysis][report]") {
   const Report report = report_of(R"_({"type": "round", "radius": 0.1, "of": {"name": "bulb", "type": "mandelbulb"}},
     {"type": "sphere", "radius": 1}, {"name": "jump", "type": "expression", "formula": "y - floor(x)"})_");
   CHECK_FALSE(report.certified);
@@ -92,7 +92,7 @@ TEST_CASE("the nodes that are estimates are named, not what is made of them", "[
   CHECK(class_of(report.objects[1].facts, report.in_cells) == "exact");
 }
 
-TEST_CASE("one union as the only object is one object", "[report]") {
+TEST_CASE("one union as the only object is one object", "[analysis][report]") {
   const char* const balls = R"({"version": 1, "materials": {"a": {"type": "diffuse"}},
     "objects": [{"name": "pair", "type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "a"},
@@ -112,7 +112,7 @@ TEST_CASE("one union as the only object is one object", "[report]") {
 
 // Regression: a lint said that an area light inside a glass ball emits no light and that a camera under water must
 // move.
-TEST_CASE("what is within glass shows", "[report]") {
+TEST_CASE("what is within glass shows", "[analysis][report]") {
   const std::string outer = R"("camera": {"position": [1.5, 0, 0]}, "objects": [
       {"type": "sphere", "radius": 2, "material": "glass"}, {"type": "sphere", "radius": 1)";
   const std::pair<std::string, std::string> cases[] = {
@@ -129,7 +129,7 @@ TEST_CASE("what is within glass shows", "[report]") {
   }
 }
 
-TEST_CASE("lints are for check, and a formula without a bound is for everyone", "[report]") {
+TEST_CASE("lints are for check, and a formula without a bound is for everyone", "[analysis][report]") {
   const std::string hidden = R"({"type": "sphere", "radius": 2}, {"type": "sphere", "radius": 1})";
   CHECK(compiled(hidden).diagnostics.all().empty());
   REQUIRE(compiled(hidden, true).diagnostics.all().size() == 2);

@@ -61,7 +61,7 @@ std::string with_part(const std::string& document, const std::string& mark, cons
 
 }  // namespace
 
-TEST_CASE("docs/reference/bytecode.md has the table of opcodes and the tables of a scene", "[golden]") {
+TEST_CASE("docs/reference/bytecode.md has the table of opcodes and the tables of a scene", "[artefact][golden]") {
   const std::string path = FATHOM_SOURCE_DIR "/docs/reference/bytecode.md";
   const std::string document = test::read_file(path);
   const std::string expected = with_part(with_part(document, "opcodes", opcode_table()), "tables", tables_of_ball());

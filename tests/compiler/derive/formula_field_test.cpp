@@ -47,7 +47,7 @@ Scene displaced_ball(const std::string& formula) {
 
 }  // namespace
 
-TEST_CASE("the constants of formulas are close to the slopes that occur", "[formula_field]") {
+TEST_CASE("the constants of formulas are close to the slopes that occur", "[derive][formula_field]") {
   const std::pair<const char*, double> cases[] = {
       {"x", 1},
       {"2*x - y + z/2", std::sqrt(5.25)},
@@ -67,7 +67,7 @@ TEST_CASE("the constants of formulas are close to the slopes that occur", "[form
   }
 }
 
-TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
+TEST_CASE("formulas that jump or have poles are estimates", "[derive][formula_field]") {
   for (const char* formula : {"floor(3*x) - y", "1/x", "sqrt(x)", "tan(x)", "x + sign(y)"}) {
     INFO(formula);
     const NodeFacts k = of_formula(formula);
@@ -78,7 +78,7 @@ TEST_CASE("formulas that jump or have poles are estimates", "[formula_field]") {
 }
 
 // Formulas of hundreds of pieces. The specialised parts that prove the bound hold a few pieces each.
-TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
+TEST_CASE("the bounds of formulas of many pieces hold", "[derive][formula_field]") {
   for (int seed = 0; seed < scaled_cases(6); ++seed) {
     Random random(seed);
     std::string formula = "1";
@@ -114,7 +114,7 @@ TEST_CASE("the bounds of formulas of many pieces hold", "[formula_field]") {
 
 // Regression: the compiler grew the box four times and then used the box even if the formula's bound did not hold
 // over it.
-TEST_CASE("a displaced node's box holds it", "[formula_field]") {
+TEST_CASE("a displaced node's box holds it", "[derive][formula_field]") {
   for (const char* formula :
        {"0.5*x", "0.9*y", "0.3*sin(5*x)", "-0.2", "0.1*x*y", "0.05*x^2 - 0.5", "0.4*x + 0.4*y", "-0.4*abs(x)"}) {
     INFO(formula);
@@ -135,7 +135,8 @@ TEST_CASE("a displaced node's box holds it", "[formula_field]") {
   }
 }
 
-TEST_CASE("a ball that grows faster than the way walked has no end, and a constant all the same", "[formula_field]") {
+TEST_CASE("a ball that grows faster than the way walked has no end, and a constant all the same",
+          "[derive][formula_field]") {
   const NodeFacts k = known(displaced_ball("-2*x"));
   CHECK(k.certified);
   CHECK(!k.box.finite());

@@ -23,7 +23,7 @@ std::string json(const std::string& rest) {
   return R"({"version": 1, )" + rest + R"(, "objects": [{"type": "sphere", "radius": 1}]})";
 }
 
-TEST_CASE("animation: a scene moves that declares `time` or `frame`, in either notation") {
+TEST_CASE("animation: a scene moves that declares `time` or `frame`, in either notation", "[frontend]") {
   for (const std::string& text :
        {json(R"("params": {"time": 0})"), std::string("fathom 1\nparam time = 0\nobject sphere(1)")}) {
     const auto animation = animation_of(text);
@@ -40,7 +40,7 @@ TEST_CASE("animation: a scene moves that declares `time` or `frame`, in either n
   CHECK((!still->time && !still->frame && still->frames == 9 && still->fps == 18));
 }
 
-TEST_CASE("animation: what is wrong with its numbers is reported") {
+TEST_CASE("animation: what is wrong with its numbers is reported", "[frontend]") {
   for (const char* film : {R"("film": {"frames": 0})", R"("film": {"frames": 1.5})", R"("film": {"fps": 0})",
                            R"("film": {"fps": "1/0"})", R"("film": {"framse": 3})"}) {
     INFO(film);
@@ -50,7 +50,7 @@ TEST_CASE("animation: what is wrong with its numbers is reported") {
   CHECK_FALSE(animation_of(json(R"("params": {"time": 0})"), {{"tmie", 1}}));
 }
 
-TEST_CASE("animation: a moment sets what the scene declares") {
+TEST_CASE("animation: a moment sets what the scene declares", "[frontend]") {
   Animation animation;
   CHECK(moment(animation, 3, 0.5).empty());
   animation.time = true;
@@ -59,7 +59,7 @@ TEST_CASE("animation: a moment sets what the scene declares") {
   CHECK(moment(animation, 3, 0.5) == Definitions{{"time", 0.5}, {"frame", 3}});
 }
 
-TEST_CASE("animation: frames, fps and shutter are read, and leave the digest of a scene as it was") {
+TEST_CASE("animation: frames, fps and shutter are read, and leave the digest of a scene as it was", "[frontend]") {
   const std::string plain =
       json(R"("camera": {"position": [0, 0, 4]}, "background": [1, 1, 1], "params": {"time": 0})");
   const std::string moving = json(
@@ -82,7 +82,7 @@ TEST_CASE("animation: frames, fps and shutter are read, and leave the digest of 
   }
 }
 
-TEST_CASE("animation: an origin that is given is the programs'") {
+TEST_CASE("animation: an origin that is given is the programs'", "[frontend]") {
   Diagnostics diagnostics;
   CompileOptions options;
   options.origin = glm::dvec3(64, 0, -32);

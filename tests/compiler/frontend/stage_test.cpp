@@ -37,14 +37,14 @@ double distance(const CompiledScene& scene, const glm::dvec3& p) {
 
 }  // namespace
 
-TEST_CASE("stage: the lowest point of a solid, to a thousandth of its box") {
+TEST_CASE("stage: the lowest point of a solid, to a thousandth of its box", "[frontend]") {
   const CompiledScene bowl = compiled(kBowl, false);
   CHECK(lowest(bowl.distance, bowl.extent) == Approx(-0.8).margin(2e-3));
   // The box contains nothing solid.
   CHECK(lowest(bowl.distance, {glm::dvec3(-1, 0.5, -1), glm::dvec3(1, 1, 1)}) == 0.5);
 }
 
-TEST_CASE("stage: a model stands on a ground, is lit, and is framed") {
+TEST_CASE("stage: a model stands on a ground, is lit, and is framed", "[frontend]") {
   for (const auto& [text, bottom] : {std::pair(kBowl, -0.8), std::pair(kBall, -3.5)}) {
     CAPTURE(text);
     const CompiledScene bare = compiled(text, false), staged = compiled(text, true);
@@ -64,7 +64,7 @@ TEST_CASE("stage: a model stands on a ground, is lit, and is framed") {
   }
 }
 
-TEST_CASE("stage: drawings and scenes of this format have none") {
+TEST_CASE("stage: drawings and scenes of this format have none", "[frontend]") {
   const CompiledScene drawing = compiled(kDisk, true);
   CHECK(drawing.lights.empty());
   CHECK(drawing.surfaces.size() == 1);
@@ -73,7 +73,7 @@ TEST_CASE("stage: drawings and scenes of this format have none") {
   CHECK(compiled(kScene, true).surfaces.size() == 1);
 }
 
-TEST_CASE("stage: a model with a mistake is reported once") {
+TEST_CASE("stage: a model with a mistake is reported once", "[frontend]") {
   Diagnostics diagnostics;
   CompileOptions options;
   options.stage = true;

@@ -10,7 +10,7 @@ namespace {
 
 using namespace fathom::compiler;
 
-TEST_CASE("box tree: finds what is not apart, in order, with fewer looks than boxes", "[compiler]") {
+TEST_CASE("box tree: finds what is not apart, in order, with fewer looks than boxes", "[geometry]") {
   std::mt19937 random(7);
   const auto number = [&] { return static_cast<double>(random() % 1000) / 10; };
   std::vector<Box> boxes = {Box(), Box::everything()};

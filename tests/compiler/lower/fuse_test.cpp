@@ -105,7 +105,7 @@ std::string fused(const std::vector<Instruction>& instructions) {
 
 }  // namespace
 
-TEST_CASE("a shape takes in its translate, drop and min", "[fuse]") {
+TEST_CASE("a shape takes in its translate, drop and min", "[lower][fuse]") {
   const Instruction move{Opcode::Translate, {1, 2, 3}}, drop{Opcode::Drop}, ball{Opcode::Sphere, {0.5}},
       box{Opcode::Box, {1, 2, 3}}, least{Opcode::Min};
   CHECK(fused({move, ball, drop}) == "sphere 0.5 at 1 2 3\n");
@@ -119,7 +119,7 @@ TEST_CASE("a shape takes in its translate, drop and min", "[fuse]") {
   CHECK(fused({ball, {Opcode::Polygon, {0, 0, 1, 0, 0, 1}}, least}) == "sphere 0.5\npolygon 3  0 0  1 0  0 1\nmin\n");
 }
 
-TEST_CASE("functions take coordinates, constants and locals for operands", "[fuse]") {
+TEST_CASE("functions take coordinates, constants and locals for operands", "[lower][fuse]") {
   const Instruction x{Opcode::X}, y{Opcode::Y}, z{Opcode::Z}, two{Opcode::Constant, {2}},
       three{Opcode::Constant, {3}}, minus{Opcode::Minus}, sine{Opcode::Sin}, ball{Opcode::Sphere, {0.5}},
       tee{Opcode::Tee, {}, 1}, load{Opcode::Load, {}, 1}, least{Opcode::Min};
@@ -143,7 +143,7 @@ TEST_CASE("functions take coordinates, constants and locals for operands", "[fus
         "sphere 0.5\ntee 0\nsin x\ntee 1\nminus\nload 0\nminus _ %1\nmin\n");
 }
 
-TEST_CASE("fused programs have the bits of plain ones", "[fuse]") {
+TEST_CASE("fused programs have the bits of plain ones", "[lower][fuse]") {
   for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(seed);
     GraphOptions options;

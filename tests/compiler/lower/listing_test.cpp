@@ -34,9 +34,9 @@ std::string print_everything(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("golden listings", "[golden]") { test::check_golden("listings", print_everything); }
+TEST_CASE("golden listings", "[lower][golden]") { test::check_golden("listings", print_everything); }
 
-TEST_CASE("a scene with one surface carries no material code", "[compile]") {
+TEST_CASE("a scene with one surface carries no material code", "[lower]") {
   const Source source("scene.json", R"({"version": 1, "objects": [{"type": "sphere", "radius": 1}]})");
   Diagnostics diagnostics;
   const auto scene = compile(source, diagnostics);
@@ -46,7 +46,7 @@ TEST_CASE("a scene with one surface carries no material code", "[compile]") {
 }
 
 // An object of one material is one surface, however many nodes it has and wherever the material is written.
-TEST_CASE("an object of one material has no tag in any program, whatever its nodes", "[compile]") {
+TEST_CASE("an object of one material has no tag in any program, whatever its nodes", "[lower]") {
   const char* const parts = R"([{"type": "sphere", "radius": 1}, {"use": "part", "scale": 2}, {"use": "part"}])";
   const std::string materials = R"("materials": {"red": {"type": "specular"}}, )";
   const std::string nodes = R"("nodes": {"part": {"type": "onion", "thickness": 0.1, "of": {"type": "box",
@@ -66,7 +66,7 @@ TEST_CASE("an object of one material has no tag in any program, whatever its nod
   }
 }
 
-TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[compile]") {
+TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[lower]") {
   for (const bool left : {true, false}) {
     std::string node = R"({"type": "sphere", "radius": 1})";
     const std::string leaf = R"({"type": "box", "half_size": [1, 2, 3]})";
@@ -82,7 +82,7 @@ TEST_CASE("a thousand nested nodes on either side stay shallow on the stack", "[
 }
 
 // Regression: a long chain of named nodes overflowed the call stack.
-TEST_CASE("a chain of a hundred thousand nodes compiles", "[compile]") {
+TEST_CASE("a chain of a hundred thousand nodes compiles", "[lower]") {
   const int links = test::scaled_cases(100000);
   std::string nodes = R"("n0": {"type": "sphere", "radius": 1})";
   for (int i = 1; i <= links; ++i) {

@@ -136,7 +136,7 @@ TEST_CASE("all passes together leave the field as it was, and so does lowering",
   }
 }
 
-TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
+TEST_CASE("lowering an unoptimised graph means what it means", "[passes][lower]") {
   vm::Workspace workspace;
   for (int seed = 0; seed < scaled_cases(400); ++seed) {
     const Scene scene = scene_of(seed, false);
@@ -155,7 +155,7 @@ TEST_CASE("lowering an unoptimised graph means what it means", "[lower]") {
 }
 
 // The innermost paint wins, whatever paint lies around it (compiler/graph/graph.h).
-TEST_CASE("paint within paint", "[lower]") {
+TEST_CASE("paint within paint", "[passes][lower]") {
   Scene scene;
   const auto add = [&](Kind kind, std::vector<double> params, std::vector<compiler::NodeId> children) {
     return scene.graph.add(kind, params, children);
@@ -171,7 +171,7 @@ TEST_CASE("paint within paint", "[lower]") {
   CHECK(vm::evaluate_surface(program, dvec3(4, 2, 0), workspace).surface == 2);
 }
 
-TEST_CASE("a part's own material survives within a painted whole", "[lower]") {
+TEST_CASE("a part's own material survives within a painted whole", "[passes][lower]") {
   const std::string text = R"({"version": 1, "materials": {"m": {"type": "diffuse"}, "n": {"type": "diffuse"}},
     "objects": [{"type": "union", "material": "m", "of": [{"type": "sphere", "radius": 1},
       {"type": "sphere", "radius": 1, "translate": [4, 0, 0], "material": "n"}]}]})";
@@ -187,7 +187,7 @@ TEST_CASE("a part's own material survives within a painted whole", "[lower]") {
   CHECK(material_at({4, 2, 0}) == "n");
 }
 
-TEST_CASE("what the compiler knows of a graph is true", "[bounds]") {
+TEST_CASE("what the compiler knows of a graph is true", "[passes][bounds]") {
   for (int seed = 0; seed < scaled_cases(600); ++seed) {
     const Scene scene = scene_of(seed, false);
     const compiler::NodeFacts known = compiler::analyse(scene.graph)[scene.root];

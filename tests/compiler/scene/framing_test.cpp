@@ -54,7 +54,7 @@ Camera random_view(test::Random& random) {
 
 }  // namespace
 
-TEST_CASE("framing: all corners are in the picture and two sides are at the margin", "[framing]") {
+TEST_CASE("framing: all corners are in the picture and two sides are at the margin", "[scene][framing]") {
   test::Random random(1);
   for (int i = 0; i < 2000; ++i) {
     const double scale = std::pow(10.0, random.uniform(-6, 6));
@@ -95,7 +95,7 @@ TEST_CASE("framing: all corners are in the picture and two sides are at the marg
   }
 }
 
-TEST_CASE("framing: a panorama is in front of the box", "[framing]") {
+TEST_CASE("framing: a panorama is in front of the box", "[scene][framing]") {
   Camera camera;
   camera.projection = Camera::Projection::Panorama;
   const Box box{{1, 1, 1}, {3, 2, 2}};
@@ -106,7 +106,7 @@ TEST_CASE("framing: a panorama is in front of the box", "[framing]") {
   CHECK(framed->position.x == Approx(2));
 }
 
-TEST_CASE("framing: no camera shows what is nothing, has no end or is beyond numbers", "[framing]") {
+TEST_CASE("framing: no camera shows what is nothing, has no end or is beyond numbers", "[scene][framing]") {
   const Camera camera;
   CHECK(!compiler::framed(camera, Box(), 1));
   CHECK(!compiler::framed(camera, Box::everything(), 1));
@@ -117,7 +117,7 @@ TEST_CASE("framing: no camera shows what is nothing, has no end or is beyond num
   CHECK(glm::length(tiny->target - tiny->position) > 0.1);
 }
 
-TEST_CASE("framing: only a camera that the scene does not have is placed", "[framing]") {
+TEST_CASE("framing: only a camera that the scene does not have is placed", "[scene][framing]") {
   Camera camera;
   camera.focus_distance = 3;
   const Box box = Box::centred(dvec3(1));

@@ -34,12 +34,12 @@ int check_overrides() {
 
 }  // namespace
 
-TEST_CASE("settings: an override replaces the scene's value, and no other does", "[settings]") {
+TEST_CASE("settings: an override replaces the scene's value, and no other does", "[scene][settings]") {
   CHECK(check_overrides<Film>() > 5);
   CHECK(check_overrides<RenderSettings>() > 5);
 }
 
-TEST_CASE("settings: a filter without a width does not take the width of the scene's filter", "[settings]") {
+TEST_CASE("settings: a filter without a width does not take the width of the scene's filter", "[scene][settings]") {
   Film film;
   film.filter_width = 3.5;
   SettingsOverrides overrides;
@@ -50,7 +50,7 @@ TEST_CASE("settings: a filter without a width does not take the width of the sce
   CHECK(with_overrides(film, overrides).filter == FilterKind::Tent);
 }
 
-TEST_CASE("settings: names, options and rows differ, and defaults are valid", "[settings]") {
+TEST_CASE("settings: names, options and rows differ, and defaults are valid", "[scene][settings]") {
   std::set<std::string_view> names, options, rows;
   for_each_setting([&](const auto& setting) {
     using Setting = std::remove_cvref_t<decltype(setting)>;
@@ -68,7 +68,7 @@ TEST_CASE("settings: names, options and rows differ, and defaults are valid", "[
   });
 }
 
-TEST_CASE("settings: the documents name every property and every option", "[settings]") {
+TEST_CASE("settings: the documents name every property and every option", "[scene][settings]") {
   const std::string properties = test::read_file(FATHOM_SOURCE_DIR "/docs/reference/scene-file.md");
   const std::string commands = test::read_file(FATHOM_SOURCE_DIR "/docs/reference/commands.md");
   for_each_setting([&](const auto& setting) {

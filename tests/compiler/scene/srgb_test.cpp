@@ -7,7 +7,7 @@
 namespace fathom::compiler::srgb_test {
 namespace {
 
-TEST_CASE("sRGB: a signal decoded and encoded is the same signal", "[srgb]") {
+TEST_CASE("sRGB: a signal decoded and encoded is the same signal", "[scene][srgb]") {
   double worst = 0;
   for (double signal = 0; signal <= 1; signal += 1e-4) {
     worst = std::max(worst, std::abs(srgb_encode(srgb_decode(signal)) - signal));
@@ -18,7 +18,7 @@ TEST_CASE("sRGB: a signal decoded and encoded is the same signal", "[srgb]") {
   CHECK(srgb_decode(0.5) == Approx(0.21404114));
 }
 
-TEST_CASE("sRGB: the conversion follows the standard", "[srgb]") {
+TEST_CASE("sRGB: the conversion follows the standard", "[scene][srgb]") {
   CHECK(srgb_encode(-1) == 0);
   CHECK(srgb_encode(NAN) == 0);
   CHECK(srgb_encode(2) == 1);

@@ -44,7 +44,7 @@ double largest_error(const compiler::CompiledScene& scene, double size) {
 
 // Regression: d_f depended on the ray's coordinates alone and was a thousand times too small where large numbers
 // cancel.
-TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
+TEST_CASE("d_f holds where large numbers cancel", "[shapes][bounds]") {
   for (const char* r : {"1", "100", "10000", "1000000"}) {
     const std::string s(r);
     CAPTURE(s);
@@ -69,7 +69,7 @@ TEST_CASE("d_f holds where large numbers cancel", "[bounds]") {
 }
 
 // Regression: a light far away would have made every distance look uncertain.
-TEST_CASE("what is far away costs nothing here", "[bounds]") {
+TEST_CASE("what is far away costs nothing here", "[shapes][bounds]") {
   CHECK(compiled_objects(
             R"({"type": "sphere", "radius": 2, "translate": [0, 1000, 0]}, {"type": "sphere", "radius": 1})")
             .cancellation <= 2);
@@ -78,7 +78,7 @@ TEST_CASE("what is far away costs nothing here", "[bounds]") {
 }
 
 // Regression: the smallest singular value was computed from squares and lost its digits next to a large one.
-TEST_CASE("stretches of nested scales", "[bounds]") {
+TEST_CASE("stretches of nested scales", "[shapes][bounds]") {
   for (const double b : {1.0, 1e2, 1e4, 1e6}) {
     using glm::dvec3;
     const double c = std::sqrt(0.5);

@@ -56,7 +56,7 @@ void check_slopes(const Scene& scene, double size) {
 
 // Regression: these nodes kept a child's Lipschitz constant below 1, although the distance to their own box is part
 // of the result.
-TEST_CASE("what adds a distance of its own changes by at least that", "[domain]") {
+TEST_CASE("what adds a distance of its own changes by at least that", "[shapes][domain]") {
   const auto check = [](Kind kind, const std::vector<double>& params, dvec3 lo, dvec3 hi) {
     Scene scene;
     NodeMaker maker(scene.graph);
@@ -77,7 +77,7 @@ TEST_CASE("what adds a distance of its own changes by at least that", "[domain]"
 
 // Regression: along an axis without jitter only the nearest copy was evaluated. The neighbour is not a mirror image
 // of that copy if the copies are jittered along another axis.
-TEST_CASE("copies that are moved along one axis have neighbours along the others", "[domain]") {
+TEST_CASE("copies that are moved along one axis have neighbours along the others", "[shapes][domain]") {
   for (int axis = 0; axis < 3; ++axis) {
     Scene scene;
     NodeMaker maker(scene.graph);
@@ -92,7 +92,7 @@ TEST_CASE("copies that are moved along one axis have neighbours along the others
 
 // Regression: the lower bound for omitted copies was 0 on the axis, where all half-planes meet, so rays along the
 // axis hit something that is not there.
-TEST_CASE("the axis of a polar repetition is as far from the copies as they are", "[domain]") {
+TEST_CASE("the axis of a polar repetition is as far from the copies as they are", "[shapes][domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
   const NodeId ball = maker.make(Kind::Sphere, {{0.2}}, {});
@@ -107,7 +107,7 @@ TEST_CASE("the axis of a polar repetition is as far from the copies as they are"
 
 // Regression: each copy rounded the side of a cell differently, and just below the side one copy was omitted: a slit
 // through the solid.
-TEST_CASE("no copy is lost at the side of a cell", "[domain]") {
+TEST_CASE("no copy is lost at the side of a cell", "[shapes][domain]") {
   const auto check = [](Kind kind, const std::vector<double>& params, dvec3 ball, double radius, dvec3 side,
                         dvec3 step) {
     Scene scene;
@@ -141,7 +141,7 @@ TEST_CASE("no copy is lost at the side of a cell", "[domain]") {
 }
 
 // Regression: beyond the last copies, the machine evaluated the last copy repeatedly instead of its neighbours.
-TEST_CASE("beyond the last copies their neighbours still count", "[domain]") {
+TEST_CASE("beyond the last copies their neighbours still count", "[shapes][domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
   const auto ball = [&](dvec3 at) {
@@ -156,7 +156,7 @@ TEST_CASE("beyond the last copies their neighbours still count", "[domain]") {
 }
 
 // Regression: a mirror normal whose squares underflow was not normalised.
-TEST_CASE("mirrors of any length of normal are the same mirror", "[domain]") {
+TEST_CASE("mirrors of any length of normal are the same mirror", "[shapes][domain]") {
   vm::Workspace workspace;
   for (const double length : {1.0, 1e-161, 1e-300, 1e200}) {
     Scene scene;
@@ -171,7 +171,7 @@ TEST_CASE("mirrors of any length of normal are the same mirror", "[domain]") {
 
 // Regression: the compiler assumed that a child symmetric about the plane stays exact under Elongate. In the middle
 // the child's nearest point can lie off the plane.
-TEST_CASE("a node pulled apart is a bound", "[domain]") {
+TEST_CASE("a node pulled apart is a bound", "[shapes][domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
   scene.root = over(maker, Kind::Elongate, {1, 0, 0}, maker.make(Kind::BoxFrame, {{0.5, 1.0, 1.0, 0.1}}, {}));
@@ -180,7 +180,7 @@ TEST_CASE("a node pulled apart is a bound", "[domain]") {
 }
 
 // Regression: the number of copies of a tiny period overflowed an int.
-TEST_CASE("more copies than can be counted are refused", "[domain]") {
+TEST_CASE("more copies than can be counted are refused", "[shapes][domain]") {
   Scene scene;
   NodeMaker maker(scene.graph);
   const NodeId ball = maker.make(Kind::Sphere, {{1.0}}, {});

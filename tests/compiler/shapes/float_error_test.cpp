@@ -87,7 +87,7 @@ double largest_error(const Scene& scene, bool flat, Random& random, int points) 
 
 // Regression: the cancellation of fat rings, needle triangles and long stars ignored the far corners that their code
 // computes from.
-TEST_CASE("float errors of shapes of any proportion are within the bound", "[bounds]") {
+TEST_CASE("float errors of shapes of any proportion are within the bound", "[shapes][bounds]") {
   for (const Sort sort : {Sort::Solid, Sort::Outline}) {
     for (const Kind kind : primitive_kinds(sort, false)) {
       int tried = 0;
@@ -105,7 +105,7 @@ TEST_CASE("float errors of shapes of any proportion are within the bound", "[bou
 }
 
 // Regression: these nodes move a child in from far away, but their cancellation did not include the distance.
-TEST_CASE("float errors of what brings a child from far off are within the bound", "[bounds]") {
+TEST_CASE("float errors of what brings a child from far off are within the bound", "[shapes][bounds]") {
   Random random(1);
   for (const double far : {1.0, 1e3, 1e6}) {
     INFO("from " << far);
@@ -133,7 +133,7 @@ TEST_CASE("float errors of what brings a child from far off are within the bound
 
 // Regression: the tube around a twist or taper touched the solid's own edges, where the tube's distance, many times
 // as steep, entered the result.
-TEST_CASE("float errors of twisted and tapered edges are within the bound", "[bounds]") {
+TEST_CASE("float errors of twisted and tapered edges are within the bound", "[shapes][bounds]") {
   for (const auto& [kind, params] : {std::pair(Kind::Taper, std::vector<double>{0.3, 1, 0.001}),
                                      std::pair(Kind::Twist, std::vector<double>{2000})}) {
     Scene scene;

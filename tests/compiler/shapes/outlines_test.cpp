@@ -70,7 +70,7 @@ void for_each_outline(const Check& each) {
 
 }  // namespace
 
-TEST_CASE("an outline of straight edges is the polygon of its corners", "[outlines]") {
+TEST_CASE("an outline of straight edges is the polygon of its corners", "[shapes][outlines]") {
   vm::Workspace workspace;
   int straight = 0;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
@@ -94,7 +94,7 @@ TEST_CASE("an outline of straight edges is the polygon of its corners", "[outlin
 }
 
 // The nearest point is on the wall, straight above or below the boundary, or on a cap inside the boundary.
-TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]") {
+TEST_CASE("an outline drawn along z is as far as brute force says", "[shapes][outlines]") {
   vm::Workspace workspace;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
     const double half_depth = random.length(0.05, 1.5);
@@ -115,7 +115,7 @@ TEST_CASE("an outline drawn along z is as far as brute force says", "[outlines]"
 
 // Each point of the boundary becomes a circle, so the nearest point is in the half-plane of p. The outline lies
 // beside the axis, or the axis is its mirror line.
-TEST_CASE("an outline turned about y is as far as brute force says", "[outlines]") {
+TEST_CASE("an outline turned about y is as far as brute force says", "[shapes][outlines]") {
   vm::Workspace workspace;
   int exact = 0;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
@@ -204,7 +204,7 @@ compiler::NodeFacts check_on_axis(Kind kind, const std::vector<double>& params, 
 }  // namespace
 
 // Regression: edges on the axis counted as surface, and the compiler called the distance inside exact.
-TEST_CASE("an outline with an edge on the axis turns into a solid without a seam", "[outlines]") {
+TEST_CASE("an outline with an edge on the axis turns into a solid without a seam", "[shapes][outlines]") {
   int exact = 0, all = 0;
   for_each_outline([&](Kind kind, const std::vector<double>& params, Random& random) {
     const compiler::Box box = compiler::spec(kind).bound(params);
@@ -216,7 +216,7 @@ TEST_CASE("an outline with an edge on the axis turns into a solid without a seam
   CHECK(exact > all / 4);
 }
 
-TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
+TEST_CASE("a polygon that crosses the axis many times is exact", "[shapes][outlines]") {
   Random random(1);
   const std::vector<double> outlines[] = {
       {0, -2, 2, -2, 2, 2, 0, 2},                                // an edge on the axis
@@ -240,7 +240,7 @@ TEST_CASE("a polygon that crosses the axis many times is exact", "[outlines]") {
 }
 
 // A profile with moved, rotated and cut parts, each of which has an edge on the axis.
-TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[outlines]") {
+TEST_CASE("parts of an outline are trimmed at the axis wherever they stand", "[shapes][outlines]") {
   vm::Workspace workspace;
   const auto at = [&](const std::string& solid, dvec3 p) {
     return vm::evaluate_distance(test::compiled_objects(solid).distance, p, workspace);

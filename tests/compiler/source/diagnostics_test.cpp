@@ -59,7 +59,7 @@ Diagnostics diagnose(Source& source) {
   return diagnostics;
 }
 
-TEST_CASE("golden diagnostics", "[diagnostics]") {
+TEST_CASE("golden diagnostics", "[source][diagnostics]") {
   check_golden("diagnostics", [](const std::string& input) {
     Source source(is_text_scene(input) && !input.starts_with("fathom 5") ? "scene.fathom" : "scene.json", input);
     const Diagnostics diagnostics = diagnose(source);
@@ -67,7 +67,7 @@ TEST_CASE("golden diagnostics", "[diagnostics]") {
   });
 }
 
-TEST_CASE("every code has a golden file and every golden file shows its code", "[diagnostics]") {
+TEST_CASE("every code has a golden file and every golden file shows its code", "[source][diagnostics]") {
   std::set<std::string> shown;
   for (const fs::path& path : golden_files("diagnostics")) {
     const std::string name = path.filename().string(), text = read_file(path);
@@ -87,7 +87,7 @@ TEST_CASE("every code has a golden file and every golden file shows its code", "
   CHECK(shown.empty());
 }
 
-TEST_CASE("codes are unique, and those in the compiler's sources are in the table", "[diagnostics]") {
+TEST_CASE("codes are unique, and those in the compiler's sources are in the table", "[source][diagnostics]") {
   std::set<std::string> table;
   for (const ErrorCode& row : kErrorCodes) CHECK(table.insert(std::string(row.code)).second);
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / "compiler")) {
@@ -102,7 +102,7 @@ TEST_CASE("codes are unique, and those in the compiler's sources are in the tabl
   }
 }
 
-TEST_CASE("short and JSON formats", "[diagnostics]") {
+TEST_CASE("short and JSON formats", "[source][diagnostics]") {
   Source source("toy.json", "{\"version\": 1,\n \"objects\": [{\"name\": \"ü\", \"type\": \"spehre\"}]}");
   const Diagnostics diagnostics = diagnose(source);
   CHECK(diagnostics.print(source, ErrorFormat::Short) ==
@@ -120,7 +120,7 @@ TEST_CASE("short and JSON formats", "[diagnostics]") {
   CHECK(json["help"][0].get<std::string>().starts_with("did you mean `sphere`?"));
 }
 
-TEST_CASE("colour changes nothing but escape sequences", "[diagnostics]") {
+TEST_CASE("colour changes nothing but escape sequences", "[source][diagnostics]") {
   Source source("toy.json", "{\"version\": 3}");
   const Diagnostics diagnostics = diagnose(source);
   const std::string colored = diagnostics.print(source, ErrorFormat::Text, true);
@@ -136,7 +136,7 @@ TEST_CASE("colour changes nothing but escape sequences", "[diagnostics]") {
   CHECK(stripped == diagnostics.print(source, ErrorFormat::Text));
 }
 
-TEST_CASE("the gutter is as wide as the line number", "[diagnostics]") {
+TEST_CASE("the gutter is as wide as the line number", "[source][diagnostics]") {
   Source source("toy.json", std::string(99, '\n') + "  x");
   Diagnostics diagnostics;
   diagnostics.error("E0102", {101, 102}, "message", "label", {"first", "second"});
@@ -150,7 +150,7 @@ TEST_CASE("the gutter is as wide as the line number", "[diagnostics]") {
         "     = help: second\n");
 }
 
-TEST_CASE("carets stay on their line, and control characters do not reach the terminal", "[diagnostics]") {
+TEST_CASE("carets stay on their line, and control characters do not reach the terminal", "[source][diagnostics]") {
   Source source("toy.json", "ab\x1b[2J\ncd");
   Diagnostics diagnostics;
   diagnostics.error("E0102", {1, 9}, "message");
@@ -158,7 +158,8 @@ TEST_CASE("carets stay on their line, and control characters do not reach the te
   CHECK(text.find(" 1 | ab\uFFFD[2J\n   |  ^^^^^\n") != std::string::npos);
 }
 
-TEST_CASE("of names as long as the file a message, its label and its help show the beginning", "[diagnostics]") {
+TEST_CASE("of names as long as the file a message, its label and its help show the beginning",
+          "[source][diagnostics]") {
   const Source source("a.json", "{}");
   const std::string name(100000, 'x');
   Diagnostics diagnostics;
@@ -168,7 +169,7 @@ TEST_CASE("of names as long as the file a message, its label and its help show t
   }
 }
 
-TEST_CASE("twenty errors are printed and the rest counted, in every format", "[diagnostics]") {
+TEST_CASE("twenty errors are printed and the rest counted, in every format", "[source][diagnostics]") {
   Source source("toy.json", "x");
   Diagnostics diagnostics;
   for (int i = 0; i < 21; ++i) diagnostics.error("E0102", {0, 1}, "message");
@@ -182,7 +183,7 @@ TEST_CASE("twenty errors are printed and the rest counted, in every format", "[d
 }
 
 // Regression: the list of nodes was checked from its end, so the last hundred errors were kept.
-TEST_CASE("of more errors than are kept the first are", "[diagnostics]") {
+TEST_CASE("of more errors than are kept the first are", "[source][diagnostics]") {
   std::string text = "{\"version\": 1, \"objects\": [\n";
   for (int i = 0; i < 200; ++i) text += "{\"type\": \"sphere\", \"radius\": -1},\n";
   Source source("many.json", text + "{\"type\": \"sphere\", \"radius\": 1}]}");
@@ -190,7 +191,7 @@ TEST_CASE("of more errors than are kept the first are", "[diagnostics]") {
   CHECK(diagnostics.print(source, ErrorFormat::Short).starts_with("many.json:2:"));
 }
 
-TEST_CASE("nearest", "[diagnostics]") {
+TEST_CASE("nearest", "[source][diagnostics]") {
   const std::vector<std::string_view> words = {"fov", "position", "target", "up", "k"};
   CHECK(nearest("fvo", words) == "fov");
   CHECK(nearest("FOV", words) == "fov");

@@ -57,7 +57,7 @@ std::string objects(const std::string& list, const std::string& more = "") {
   return R"({"version": 1, )" + more + R"("objects": [)" + list + "]}";
 }
 
-TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
+TEST_CASE("limits: each is refused beyond its edge", "[source][limits]") {
   const std::string ball = objects(kBall);
   check_edge(ball, &Limits::file_size, static_cast<double>(ball.size()), "E0008");
   check_edge(ball, &Limits::tokens, 10, "E0008");  // 3 brackets, 4 names, 3 values
@@ -79,14 +79,14 @@ TEST_CASE("limits: each is refused beyond its edge", "[limits]") {
              "E0301");
 }
 
-TEST_CASE("limits: the memory that a scene's nodes take", "[limits]") {
+TEST_CASE("limits: the memory that a scene's nodes take", "[source][limits]") {
   const std::string two = objects(kBall + ", " + R"({"type": "box", "half_size": [1, 1, 1]})");
   check_edge(two, &Limits::memory, 5 * kBytesPerNode, "E0312");
 }
 
 // Each of three glass balls is cut by the balls before it: 2 + 4 + 6 nodes. A transform and a paint count one node
 // each.
-TEST_CASE("limits: the solids of transparent materials", "[limits]") {
+TEST_CASE("limits: the solids of transparent materials", "[source][limits]") {
   std::string materials, balls;
   for (int i = 0; i < 3; ++i) {
     materials += fmt::format(R"({}"g{}": {{"type": "transparent"}})", i == 0 ? "" : ", ", i);
@@ -95,7 +95,7 @@ TEST_CASE("limits: the solids of transparent materials", "[limits]") {
   check_edge(objects(balls, R"("materials": {)" + materials + "}, "), &Limits::media, 12, "E0312");
 }
 
-TEST_CASE("limits: the length of a program and its stack", "[limits]") {
+TEST_CASE("limits: the length of a program and its stack", "[source][limits]") {
   const std::string three = objects(kBall + R"(, {"type": "sphere", "radius": 2, "translate": [4, 0, 0]},
       {"type": "box", "half_size": [1, 2, 3], "translate": [0, 9, 0]})");
   Limits limits;
@@ -118,7 +118,7 @@ TEST_CASE("limits: the length of a program and its stack", "[limits]") {
 }
 
 TEST_CASE("limits: forty doublings of a node are forty nodes, and moved ones are refused before they are made",
-          "[limits]") {
+          "[source][limits]") {
   std::string plain = R"("a0": )" + kBall, moved = plain;
   for (int i = 1; i <= 40; ++i) {
     plain +=
@@ -143,7 +143,7 @@ TEST_CASE("limits: forty doublings of a node are forty nodes, and moved ones are
 
 // The program of a formula is subject to the user's limits, too. Exceeding a limit is a user error, not an internal
 // error.
-TEST_CASE("limits: what a program remembers", "[limits]") {
+TEST_CASE("limits: what a program remembers", "[source][limits]") {
   std::string list = "a0 var-x\nm0 var-y\n";
   for (int i = 0; i < 40; ++i) list += fmt::format("a{1} add a{0} m{0}\nm{1} sin a{0}\n", i, i + 1);
   Limits limits;
@@ -158,7 +158,7 @@ TEST_CASE("limits: what a program remembers", "[limits]") {
 }
 
 // Regression: the compiler built a list of operands for each union, as long as all unions before it.
-TEST_CASE("limits: a chain of twenty thousand unions compiles to as many instructions", "[limits]") {
+TEST_CASE("limits: a chain of twenty thousand unions compiles to as many instructions", "[source][limits]") {
   std::string nodes = R"("a0": )" + kBall;
   for (int i = 1; i <= 20000; ++i) {
     nodes += fmt::format(R"(, "a{}": {{"type": "union", "of": [{{"use": "a{}"}},
@@ -170,7 +170,7 @@ TEST_CASE("limits: a chain of twenty thousand unions compiles to as many instruc
   CHECK(chain.instructions <= 20002);
 }
 
-TEST_CASE("limits: docs/reference/limits.md is the table", "[limits]") {
+TEST_CASE("limits: docs/reference/limits.md is the table", "[source][limits]") {
   std::stringstream page;
   page << std::ifstream(std::string(FATHOM_SOURCE_DIR) + "/docs/reference/limits.md").rdbuf();
   const std::string text = page.str();
@@ -188,7 +188,7 @@ TEST_CASE("limits: docs/reference/limits.md is the table", "[limits]") {
   }
 }
 
-TEST_CASE("limits: how to allow more is a number that is easily read", "[limits]") {
+TEST_CASE("limits: how to allow more is a number that is easily read", "[source][limits]") {
   CHECK(raise(&Limits::nodes, 1234567) == "`--limit nodes=1300000` allows more");
   CHECK(raise(&Limits::nodes, 999999) == "`--limit nodes=1000000` allows more");
   CHECK(raise(&Limits::nodes, 1000000) == "`--limit nodes=1000000` allows more");

@@ -59,7 +59,7 @@ std::string patched(const std::string& diff, const std::string& before) {
 
 }  // namespace
 
-TEST_CASE("line diff: a change, with what stays around it", "[diff]") {
+TEST_CASE("line diff: a change, with what stays around it", "[source][diff]") {
   CHECK(unified_diff("a\nb\nc\nd\ne\nf\ng\n", "a\nb\nc\nd\nE\nf\ng\n") ==
         "@@ -2,6 +2,6 @@\n b\n c\n d\n-e\n+E\n f\n g\n");
   CHECK(unified_diff("a\nb\n", "a\nb\n") == "");
@@ -67,7 +67,7 @@ TEST_CASE("line diff: a change, with what stays around it", "[diff]") {
   CHECK(unified_diff("a\n", "") == "@@ -1,1 +0,0 @@\n-a\n");
 }
 
-TEST_CASE("line diff: changes seven lines apart have hunks of their own, nearer ones share one", "[diff]") {
+TEST_CASE("line diff: changes seven lines apart have hunks of their own, nearer ones share one", "[source][diff]") {
   const std::string before = "x\n1\n2\n3\n4\n5\n6\n7\ny\n";
   const std::string apart = unified_diff(before, "X\n1\n2\n3\n4\n5\n6\n7\nY\n");
   CHECK(std::count(apart.begin(), apart.end(), '@') == 8);
@@ -75,7 +75,7 @@ TEST_CASE("line diff: changes seven lines apart have hunks of their own, nearer 
   CHECK(std::count(near.begin(), near.end(), '@') == 4);
 }
 
-TEST_CASE("line diff: applied to the one text it gives the other, and marks no line too many", "[diff]") {
+TEST_CASE("line diff: applied to the one text it gives the other, and marks no line too many", "[source][diff]") {
   fathom::test::Random random(1);
   for (int round = 0; round < 500; ++round) {
     Lines before, after;
@@ -91,7 +91,7 @@ TEST_CASE("line diff: applied to the one text it gives the other, and marks no l
   }
 }
 
-TEST_CASE("line diff: what changes too much is not compared, however much stays around it", "[diff]") {
+TEST_CASE("line diff: what changes too much is not compared, however much stays around it", "[source][diff]") {
   std::string same, other;
   for (int i = 0; i < 20000; ++i) same += "line " + std::to_string(i) + "\n";
   for (int i = 0; i < 11; ++i) other += "other\n";

@@ -26,7 +26,7 @@ mode_t mode_of(const std::string& path) {
   return status.st_mode & 07777;
 }
 
-TEST_CASE("atomic files: what is replaced leaves its permissions, what is new has the usual ones") {
+TEST_CASE("atomic files: what is replaced leaves its permissions, what is new has the usual ones", "[base]") {
   const test::TemporaryFolder folder;
   const mode_t mask = ::umask(022);
   CHECK_FALSE(write_file(kBytes, folder.file("new")));
@@ -39,7 +39,7 @@ TEST_CASE("atomic files: what is replaced leaves its permissions, what is new ha
 
 // Regression: the program checked the old checkpoint before syncing the new one. In the seconds between, another
 // run's checkpoint could be replaced.
-TEST_CASE("atomic files: whether the target may be replaced is asked last") {
+TEST_CASE("atomic files: whether the target may be replaced is asked last", "[base]") {
   const test::TemporaryFolder folder;
   AtomicFile file(folder.file("target"));
   REQUIRE(file.write(kBytes));
@@ -53,7 +53,7 @@ TEST_CASE("atomic files: whether the target may be replaced is asked last") {
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("atomic files: of a link the target is written") {
+TEST_CASE("atomic files: of a link the target is written", "[base]") {
   const test::TemporaryFolder folder;
   fs::create_directory(folder.path() / "far");
   std::ofstream(folder.file("far/target")) << "before";
@@ -68,7 +68,7 @@ TEST_CASE("atomic files: of a link the target is written") {
   CHECK(write_file(kBytes, folder.file("loose"))->find("leads nowhere") != std::string::npos);
 }
 
-TEST_CASE("atomic files: a name as long as names can be is written, a longer one is refused before") {
+TEST_CASE("atomic files: a name as long as names can be is written, a longer one is refused before", "[base]") {
   const test::TemporaryFolder folder;
   const std::string longest(255, 'n');
   CHECK_FALSE(check_file_path(folder.file(longest)));
@@ -82,7 +82,7 @@ TEST_CASE("atomic files: a name as long as names can be is written, a longer one
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("atomic files: what a killed program left is removed, what another is writing is not") {
+TEST_CASE("atomic files: what a killed program left is removed, what another is writing is not", "[base]") {
   const test::TemporaryFolder folder;
   const char* const kMine[] = {".fathom-mine", ".fathom-", ".fathom-2024", ".fathom-2024-01-05"};
   for (const char* name : kMine) std::ofstream(folder.file(name)) << "x";
@@ -98,7 +98,7 @@ TEST_CASE("atomic files: what a killed program left is removed, what another is 
   CHECK_FALSE(fs::exists(folder.path() / ".fathom-1-0"));
 }
 
-TEST_CASE("atomic files: a stamp tells whether it is still the same file") {
+TEST_CASE("atomic files: a stamp tells whether it is still the same file", "[base]") {
   const test::TemporaryFolder folder;
   CHECK_FALSE(stamp_of(folder.file("a")));
   CHECK_FALSE(write_file(kBytes, folder.file("a")));

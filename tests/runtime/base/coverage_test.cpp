@@ -56,7 +56,7 @@ Coverage random_coverage(RandomBlocks& random, int blocks) {
   return covered;
 }
 
-TEST_CASE("coverage: the tidy form is known when it is seen") {
+TEST_CASE("coverage: the tidy form is known when it is seen", "[base]") {
   int canonicalise = 0, untidy = 0;
   for (unsigned seed = 0; seed < 4000; ++seed) {
     RandomBlocks random(seed);
@@ -83,7 +83,7 @@ TEST_CASE("coverage: the tidy form is known when it is seen") {
   CHECK(untidy > 500);
 }
 
-TEST_CASE("coverage: missing is what is not there, once") {
+TEST_CASE("coverage: missing is what is not there, once", "[base]") {
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomBlocks random(seed);
     const Coverage covered = random_coverage(random, 1 + random.whole(8));
@@ -102,7 +102,7 @@ TEST_CASE("coverage: missing is what is not there, once") {
   }
 }
 
-TEST_CASE("coverage: its form depends on what is covered alone") {
+TEST_CASE("coverage: its form depends on what is covered alone", "[base]") {
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomBlocks random(seed);
     const Coverage covered = random_coverage(random, 6);
@@ -124,7 +124,7 @@ TEST_CASE("coverage: its form depends on what is covered alone") {
   }
 }
 
-TEST_CASE("coverage: overlaps are found, and only those") {
+TEST_CASE("coverage: overlaps are found, and only those", "[base]") {
   int some = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomBlocks random(seed);
@@ -143,7 +143,7 @@ TEST_CASE("coverage: overlaps are found, and only those") {
 
 // Regression: one row of the image can have as many blocks as a file has room for. Comparing each block with each
 // other took minutes.
-TEST_CASE("coverage: whether many blocks are apart is soon known") {
+TEST_CASE("coverage: whether many blocks are apart is soon known", "[base]") {
   Coverage even, odd;
   for (std::uint32_t i = 0; i < 200000; ++i) {
     even.add({{0, 0, 9, 1}, {4 * i, 4 * i + 1}});

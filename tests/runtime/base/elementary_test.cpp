@@ -7,7 +7,7 @@
 namespace fathom::runtime::elementary_test {
 namespace {
 
-TEST_CASE("elementary: sine and cosine of a turn are within 2e-7 of libm's", "[runtime]") {
+TEST_CASE("elementary: sine and cosine of a turn are within 2e-7 of libm's", "[base]") {
   double worst = 0;
   for (int i = 0; i <= 1 << 20; ++i) {
     const float u = static_cast<float>(i) * 0x1p-20f;
@@ -19,7 +19,7 @@ TEST_CASE("elementary: sine and cosine of a turn are within 2e-7 of libm's", "[r
   CHECK(worst <= 2e-7);
 }
 
-TEST_CASE("elementary: exp is within 2e-7 of libm's, and ends where float does", "[runtime]") {
+TEST_CASE("elementary: exp is within 2e-7 of libm's, and ends where float does", "[base]") {
   double worst = 0;
   for (double x = -86; x < 88; x += 1e-4) {
     const float rounded = static_cast<float>(x);
@@ -34,7 +34,7 @@ TEST_CASE("elementary: exp is within 2e-7 of libm's, and ends where float does",
   CHECK(std::isnan(exp(NAN)));
 }
 
-TEST_CASE("elementary: log is within 3e-7 of libm's, from the smallest float to the largest", "[runtime]") {
+TEST_CASE("elementary: log is within 3e-7 of libm's, from the smallest float to the largest", "[base]") {
   double worst = 0;
   const auto check = [&](float x) {
     const double truth = std::log(static_cast<double>(x));

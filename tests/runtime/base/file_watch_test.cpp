@@ -23,7 +23,7 @@ class Watched {
 
 }  // namespace
 
-TEST_CASE("file watch: what stays as it is has not changed") {
+TEST_CASE("file watch: what stays as it is has not changed", "[base]") {
   const Watched file;
   FileWatch watch = file.watch();
   CHECK(!watch.changed());
@@ -31,7 +31,7 @@ TEST_CASE("file watch: what stays as it is has not changed") {
   CHECK(!watch.settled());
 }
 
-TEST_CASE("file watch: a change has settled when a second look finds the same, and counts once") {
+TEST_CASE("file watch: a change has settled when a second look finds the same, and counts once", "[base]") {
   const Watched file;
   FileWatch watch = file.watch();
   file.write("another scene");
@@ -41,7 +41,7 @@ TEST_CASE("file watch: a change has settled when a second look finds the same, a
   CHECK(!watch.changed());
 }
 
-TEST_CASE("file watch: a file that is written in steps settles after the last") {
+TEST_CASE("file watch: a file that is written in steps settles after the last", "[base]") {
   const Watched file;
   FileWatch watch = file.watch();
   for (const char* text : {"", "{", "{ \"version\": 1 }"}) {
@@ -52,7 +52,7 @@ TEST_CASE("file watch: a file that is written in steps settles after the last") 
   CHECK(watch.settled());
 }
 
-TEST_CASE("file watch: a change that is noticed early stays one until it has settled") {
+TEST_CASE("file watch: a change that is noticed early stays one until it has settled", "[base]") {
   const Watched file;
   FileWatch watch = file.watch();
   file.write("");
@@ -64,7 +64,7 @@ TEST_CASE("file watch: a change that is noticed early stays one until it has set
   CHECK(!watch.changed());
 }
 
-TEST_CASE("file watch: a file that is away has not changed, nor settled, until it is back") {
+TEST_CASE("file watch: a file that is away has not changed, nor settled, until it is back", "[base]") {
   const Watched file;
   FileWatch watch = file.watch();
   file.remove();
@@ -80,7 +80,7 @@ TEST_CASE("file watch: a file that is away has not changed, nor settled, until i
   CHECK(watch.settled());
 }
 
-TEST_CASE("file watch: one of several files is enough") {
+TEST_CASE("file watch: one of several files is enough", "[base]") {
   const test::TemporaryFolder folder;
   std::ofstream(folder.file("a")) << "1";
   std::ofstream(folder.file("b")) << "1";

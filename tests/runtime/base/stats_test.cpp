@@ -9,7 +9,7 @@
 namespace fathom::runtime::stats_test {
 namespace {
 
-TEST_CASE("stats: counts add up and come out as JSON", "[runtime]") {
+TEST_CASE("stats: counts add up and come out as JSON", "[base]") {
   Stats a, b;
   a.primary_rays = 3;
   a.march.rays = 4;
@@ -37,7 +37,7 @@ TEST_CASE("stats: counts add up and come out as JSON", "[runtime]") {
   CHECK(to_table(a).find("seconds of") == std::string::npos);
 }
 
-TEST_CASE("stats: instructions an evaluation, and the share of lanes that held a ray", "[runtime]") {
+TEST_CASE("stats: instructions an evaluation, and the share of lanes that held a ray", "[base]") {
   Stats stats;
   CHECK(stats.instructions_per_evaluation() == 0);
   CHECK(stats.utilisation() == 1);
@@ -51,7 +51,7 @@ TEST_CASE("stats: instructions an evaluation, and the share of lanes that held a
   CHECK(to_table(stats).find("75.000") != std::string::npos);
 }
 
-TEST_CASE("stats: stages of threads add up, and what is left of their time is waiting", "[runtime]") {
+TEST_CASE("stats: stages of threads add up, and what is left of their time is waiting", "[base]") {
   Stats a, b;
   a.stages = StageSeconds{3, 0.5, 0.25, 0.125, 0};
   b.stages = StageSeconds{2, 0, 0.25, 0.125, 0.75};
@@ -71,7 +71,7 @@ TEST_CASE("stats: stages of threads add up, and what is left of their time is wa
   CHECK(table.find("seconds of waiting                 1.000   12.5 %\n") != std::string::npos);
 }
 
-TEST_CASE("stats: a clock charges each stage what passes in it, and no time twice", "[runtime]") {
+TEST_CASE("stats: a clock charges each stage what passes in it, and no time twice", "[base]") {
   using Clock = std::chrono::steady_clock;
   StageClock clock;
   clock.enter(Stage::Film);
@@ -100,7 +100,7 @@ TEST_CASE("stats: a clock charges each stage what passes in it, and no time twic
   CHECK(std::accumulate(seconds.begin(), seconds.end(), 0.0) <= all - 0.002);
 }
 
-TEST_CASE("stats: the peak of memory grows with what is held", "[runtime]") {
+TEST_CASE("stats: the peak of memory grows with what is held", "[base]") {
   const std::uint64_t before = peak_memory();
   REQUIRE(before > 1u << 20);
   REQUIRE(before < std::uint64_t{1} << 40);

@@ -44,7 +44,7 @@ std::ptrdiff_t fields(const std::string& line) { return std::count(line.begin(),
 
 }  // namespace
 
-TEST_CASE("cli: chart writes a page, tables, charts and maps") {
+TEST_CASE("cli: chart writes a page, tables, charts and maps", "[cli]") {
   const Folder folder;
   folder.write("ground.json", kGround);
   const Result result =
@@ -76,7 +76,7 @@ TEST_CASE("cli: chart writes a page, tables, charts and maps") {
   }
 }
 
-TEST_CASE("cli: chart of a scene with a lamp compares ways to find light") {
+TEST_CASE("cli: chart of a scene with a lamp compares ways to find light", "[cli]") {
   const Folder folder;
   folder.write("lamp.json", R"({"version": 1, "film": {"width": 24, "height": 12}, "background": [0.1, 0.1, 0.1],
     "camera": {"position": [0, 0.5, 4], "target": [0, -0.5, 0]},
@@ -94,7 +94,7 @@ TEST_CASE("cli: chart of a scene with a lamp compares ways to find light") {
   CHECK(pictures[9].starts_with("lamp,tiered,f32,0,independent,bsdf,4,2,"));
 }
 
-TEST_CASE("cli: chart without pictures, quietly, from standard input and of a scene where nothing is seen") {
+TEST_CASE("cli: chart without pictures, quietly, from standard input and of a scene where nothing is seen", "[cli]") {
   const Folder folder;
   const Result quiet = folder.run(std::string("chart - -o a -q --no-images") + kFew, kBall);
   CHECK(quiet.code == 0);
@@ -110,7 +110,7 @@ TEST_CASE("cli: chart without pictures, quietly, from standard input and of a sc
   CHECK(lines_of(folder.read("b/chart.csv")).size() == 1 + 33);
 }
 
-TEST_CASE("cli: chart's maps keep the film's shape, however tall it is") {
+TEST_CASE("cli: chart's maps keep the film's shape, however tall it is", "[cli]") {
   const Folder folder;
   const int scale = 34;  // height of the strip below a map
   for (const auto& [film, size] : {std::pair(R"("width": 64, "height": 16)", std::pair(320, 80 + scale)),
@@ -124,7 +124,7 @@ TEST_CASE("cli: chart's maps keep the film's shape, however tall it is") {
   }
 }
 
-TEST_CASE("cli: chart says what is wrong, and leaves nothing behind") {
+TEST_CASE("cli: chart says what is wrong, and leaves nothing behind", "[cli]") {
   struct Case {
     const char* arguments;
     int code;
@@ -160,7 +160,7 @@ TEST_CASE("cli: chart says what is wrong, and leaves nothing behind") {
   CHECK(folder.files() == 3);  // only the scenes
 }
 
-TEST_CASE("cli: render follows rays as it is told") {
+TEST_CASE("cli: render follows rays as it is told", "[cli]") {
   const Folder folder;
   folder.write("ground.json", kGround);
   const auto picture = [&](const std::string& flags) {
@@ -185,7 +185,7 @@ TEST_CASE("cli: render follows rays as it is told") {
   }
 }
 
-TEST_CASE("cli: ways to follow rays that do not go together are exit code 2") {
+TEST_CASE("cli: ways to follow rays that do not go together are exit code 2", "[cli]") {
   struct Case {
     const char* arguments;
     const char* message;
@@ -217,7 +217,7 @@ TEST_CASE("cli: ways to follow rays that do not go together are exit code 2") {
   CHECK(folder.files() == 2);
 }
 
-TEST_CASE("cli: the closing numbers say how rays ended") {
+TEST_CASE("cli: the closing numbers say how rays ended", "[cli]") {
   const Folder folder;
   const auto stats = [&](const std::string& flags) {
     const Result result = folder.run("render ball.json -q -o a.png --stats-json - " + flags);

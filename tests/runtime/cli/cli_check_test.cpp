@@ -39,7 +39,7 @@ std::vector<nlohmann::json> json_lines(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("cli: check says how exact each object is and what costs the most") {
+TEST_CASE("cli: check says how exact each object is and what costs the most", "[cli]") {
   const Folder folder;
   folder.write("rope.json", kRope);
   folder.write("bulb.json", kBulb);
@@ -55,7 +55,7 @@ TEST_CASE("cli: check says how exact each object is and what costs the most") {
 }
 
 // Regression: the location was that of the whole formula, the first line of an expression list.
-TEST_CASE("cli: check names the operation that has no bound, and its line") {
+TEST_CASE("cli: check names the operation that has no bound, and its line", "[cli]") {
   const Folder folder;
   folder.write("jump.vm", "# steps\n_0 var-x\n_1 var-y\n_2 floor _0\n_3 sub _1 _2\n_4 const 0.1\n_5 add _3 _4\n");
   const Result list = folder.run("check jump.vm");
@@ -75,7 +75,7 @@ TEST_CASE("cli: check names the operation that has no bound, and its line") {
   CHECK(scene["estimates"][0]["operation"] == nlohmann::json({{"text", "sqrt(y)"}, {"line", 2}, {"column", 98}}));
 }
 
-TEST_CASE("cli: check prints the report as JSON lines") {
+TEST_CASE("cli: check prints the report as JSON lines", "[cli]") {
   const Folder folder;
   folder.write("rope.json", kRope);
   const std::vector<nlohmann::json> lines = json_lines(folder.run("check rope.json --error-format json").out);
@@ -91,7 +91,7 @@ TEST_CASE("cli: check prints the report as JSON lines") {
   CHECK(lines[2]["estimates"].empty());
 }
 
-TEST_CASE("cli: check --probe prints what it saw of every constant") {
+TEST_CASE("cli: check --probe prints what it saw of every constant", "[cli]") {
   const Folder folder;
   folder.write("rope.json", kRope);
   folder.write("bulb.json", kBulb);
@@ -112,7 +112,7 @@ TEST_CASE("cli: check --probe prints what it saw of every constant") {
   CHECK(folder.run("check rope.json --probe 0").code == 2);
 }
 
-TEST_CASE("cli: check takes several scenes, names each and counts warnings") {
+TEST_CASE("cli: check takes several scenes, names each and counts warnings", "[cli]") {
   const Folder folder;
   folder.write("unused.json", R"({"version": 1, "background": [1, 1, 1], "materials": {"m": {"type": "diffuse"}},
     "objects": [{"type": "sphere", "radius": 1}]})");

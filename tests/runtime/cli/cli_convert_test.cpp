@@ -17,7 +17,7 @@ const char* const kPosts =
 
 }  // namespace
 
-TEST_CASE("cli: every verb reads texts, from files of any name and from standard input") {
+TEST_CASE("cli: every verb reads texts, from files of any name and from standard input", "[cli]") {
   const Folder folder;
   folder.write("posts.fathom", kPosts);
   CHECK_THAT(folder.run("check posts.fathom").out, Contains("posts.fathom: no errors"));
@@ -33,7 +33,7 @@ TEST_CASE("cli: every verb reads texts, from files of any name and from standard
   CHECK(folder.run("eval a.fbc --at 0,0.75,0 -D n=1").out == "0.25 0 1 0 posts\n");
 }
 
-TEST_CASE("cli: convert goes from JSON to text and back") {
+TEST_CASE("cli: convert goes from JSON to text and back", "[cli]") {
   const Folder folder;
   folder.write(
       "a.json",
@@ -58,7 +58,7 @@ TEST_CASE("cli: convert goes from JSON to text and back") {
   CHECK(folder.run("convert bad.fathom").code == 65);
 }
 
-TEST_CASE("cli: fmt prints, writes and checks the layout") {
+TEST_CASE("cli: fmt prints, writes and checks the layout", "[cli]") {
   const Folder folder;
   folder.write("a.fathom", "fathom 1\nobject sphere( 1 )\n");
   CHECK(folder.run("fmt a.fathom").out == "fathom 1\nobject sphere(1)\n");

@@ -30,7 +30,7 @@ struct Pictures : Folder {
 
 }  // namespace
 
-TEST_CASE("cli: diff prints what two pictures differ in") {
+TEST_CASE("cli: diff prints what two pictures differ in", "[cli]") {
   const Pictures folder;
   const Result result = folder.run("diff a.pfm b.pfm");
   CHECK(result.code == 0);
@@ -45,7 +45,7 @@ TEST_CASE("cli: diff prints what two pictures differ in") {
   CHECK_THAT(same.out, Contains("mse     0\n") && Contains("flip    0\n"));
 }
 
-TEST_CASE("cli: diff ends with 1 above the tolerance of its metric") {
+TEST_CASE("cli: diff ends with 1 above the tolerance of its metric", "[cli]") {
   const Pictures folder;
   CHECK(folder.run("diff a.pfm b.pfm --tol 0.88").code == 0);
   CHECK(folder.run("diff a.pfm b.pfm --tol 2 --metric max").code == 0);
@@ -62,7 +62,7 @@ TEST_CASE("cli: diff ends with 1 above the tolerance of its metric") {
   CHECK_THAT(invalid.out, Contains("invalid 1"));
 }
 
-TEST_CASE("cli: diff draws where pictures differ") {
+TEST_CASE("cli: diff draws where pictures differ", "[cli]") {
   const Pictures folder;
   const Result result = folder.run("diff a.pfm b.pfm -o map.png");
   CHECK(result.code == 0);
@@ -71,7 +71,7 @@ TEST_CASE("cli: diff draws where pictures differ") {
   CHECK(folder.run("diff map.png b.pfm -o map.png").code == 2);
 }
 
-TEST_CASE("cli: a render differs from itself by the rounding of its file alone") {
+TEST_CASE("cli: a render differs from itself by the rounding of its file alone", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -o a.png -o a.exr -o a.pfm").code == 0);
   REQUIRE(folder.run("render ball.json -o b.png --seed 5").code == 0);
@@ -80,7 +80,7 @@ TEST_CASE("cli: a render differs from itself by the rounding of its file alone")
   CHECK(folder.run("diff a.png b.png --tol 0.005 --metric max").code == 1);
 }
 
-TEST_CASE("cli: pictures that cannot be compared") {
+TEST_CASE("cli: pictures that cannot be compared", "[cli]") {
   const Pictures folder;
   REQUIRE(folder.run("render ball.json -o ball.png").code == 0);
   const Result sizes = folder.run("diff a.pfm ball.png");

@@ -14,7 +14,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: schema is JSON on stdout") {
+TEST_CASE("cli: schema is JSON on stdout", "[cli]") {
   const Result result = Folder().run("schema");
   CHECK(result.code == 0);
   CHECK(result.err == "");
@@ -23,7 +23,7 @@ TEST_CASE("cli: schema is JSON on stdout") {
   CHECK(schema["required"] == nlohmann::json({"version", "objects"}));
 }
 
-TEST_CASE("cli: dump prints each stage on stdout") {
+TEST_CASE("cli: dump prints each stage on stdout", "[cli]") {
   const Folder folder;
   CHECK_THAT(folder.run("dump ball.json").out, Contains("sphere") && Contains("0.5"));
   CHECK_THAT(folder.run("dump two.json --program surface").out, Contains("tag"));
@@ -36,7 +36,7 @@ TEST_CASE("cli: dump prints each stage on stdout") {
   CHECK(folder.run("dump two.json").err == "");
 }
 
-TEST_CASE("cli: dump prints JSON and drawings") {
+TEST_CASE("cli: dump prints JSON and drawings", "[cli]") {
   const Folder folder;
   const auto program = nlohmann::json::parse(folder.run("dump two.json --program surface --format json").out);
   CHECK(program["program"] == "surface");
@@ -60,7 +60,7 @@ TEST_CASE("cli: dump prints JSON and drawings") {
 }
 
 // Regression: the dump left out all but the first immediates group of an outline, and all later offsets were wrong.
-TEST_CASE("cli: dump prints every group of an outline as JSON, and what is fused") {
+TEST_CASE("cli: dump prints every group of an outline as JSON, and what is fused", "[cli]") {
   const Folder folder;
   folder.write("triangle.json", R"({"version": 1, "objects": [
     {"type": "extrude", "half_depth": 1, "of": {"type": "polygon", "points": [[0, 0], [2, 0], [0, 1]]}},
@@ -78,7 +78,7 @@ TEST_CASE("cli: dump prints every group of an outline as JSON, and what is fused
   CHECK(sphere["immediates"] == nlohmann::json({{"radius", 1}}));
 }
 
-TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
+TEST_CASE("cli: dump --diff prints what each pass changed and saved", "[cli]") {
   const Folder folder;
   folder.write("fold.json", R"({"version": 1, "objects": [
     {"type": "round", "radius": 0.25, "of": {"type": "sphere", "radius": 1}},
@@ -113,7 +113,7 @@ TEST_CASE("cli: dump --diff prints what each pass changed and saved") {
   CHECK_THAT(folder.run("dump fold.json --diff --after strip").out, !Contains("pass fold"));
 }
 
-TEST_CASE("cli: dump --region prints the part that matters at a point, and the whole program") {
+TEST_CASE("cli: dump --region prints the part that matters at a point, and the whole program", "[cli]") {
   const Folder folder;
   std::string row;
   for (int i = 0; i < 60; ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("cli: dump --region prints the part that matters at a point, and the w
   CHECK(folder.run("dump two.json --region here").code == 2);
 }
 
-TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first") {
+TEST_CASE("cli: dump --stats says what operations and nodes cost, the dearest first", "[cli]") {
   CHECK(Folder().run("dump two.json --stats").out ==
         R"(operation             count      cost   share
 box                       1        16   64.0%
@@ -151,7 +151,7 @@ total      2        25
 )");
 }
 
-TEST_CASE("cli: dump --run shows the stacks at a point and names the first number that is not finite") {
+TEST_CASE("cli: dump --run shows the stacks at a point and names the first number that is not finite", "[cli]") {
   const Folder folder;
   const auto ball = folder.run("dump ball.json --run --at 0,3,0");
   CHECK(ball.code == 0);
@@ -175,14 +175,14 @@ TEST_CASE("cli: dump --run shows the stacks at a point and names the first numbe
 }
 
 // Regression: the diff printed pages of operands in another order, which saves nothing.
-TEST_CASE("cli: dump --diff leaves out operands that only change places") {
+TEST_CASE("cli: dump --diff leaves out operands that only change places", "[cli]") {
   const Folder folder;
   folder.write("swap.json", R"_({"version": 1, "objects": [
     {"type": "expression", "formula": ["a = sin(x)", "b = cos(y)", "min(b, a) + b*a"]}]})_");
   CHECK_THAT(folder.run("dump swap.json --diff").out, !Contains("pass share"));
 }
 
-TEST_CASE("cli: dump --diff of two scenes says what their programs differ in") {
+TEST_CASE("cli: dump --diff of two scenes says what their programs differ in", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("compile two.json -o two.fbc").code == 0);
   CHECK(folder.run("dump --diff two.json two.fbc").out == "; two.json and two.fbc are the same program\n");

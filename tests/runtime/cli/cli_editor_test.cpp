@@ -17,7 +17,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: schema writes what editors read") {
+TEST_CASE("cli: schema writes what editors read", "[cli]") {
   const Folder folder;
   const Result vim = folder.run("schema --editor vim");
   CHECK(vim.code == 0);
@@ -34,7 +34,7 @@ TEST_CASE("cli: schema writes what editors read") {
   CHECK_THAT(grammar.dump(), Contains("smooth_union|"));
 }
 
-TEST_CASE("cli: the problem matcher reads the short form of errors") {
+TEST_CASE("cli: the problem matcher reads the short form of errors", "[cli]") {
   const Folder folder;
   folder.run("schema --editor vscode -o code");
   const auto matcher =

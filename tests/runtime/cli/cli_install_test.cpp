@@ -13,7 +13,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: cmake --install installs a program that renders an installed scene from another folder") {
+TEST_CASE("cli: cmake --install installs a program that renders an installed scene from another folder", "[cli]") {
   const Folder folder;
   const Result result = folder.run_script(R"sh(
     unset DESTDIR

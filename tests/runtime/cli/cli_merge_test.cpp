@@ -14,7 +14,7 @@ namespace {
 using namespace fathom::test;
 using Catch::Contains;
 
-TEST_CASE("cli merge: crops and sample ranges split at random are the whole render, with cmp") {
+TEST_CASE("cli merge: crops and sample ranges split at random are the whole render, with cmp", "[cli]") {
   const Folder folder;
   for (unsigned seed = 0; seed < 3; ++seed) {
     std::mt19937 random(seed);
@@ -53,7 +53,7 @@ TEST_CASE("cli merge: crops and sample ranges split at random are the whole rend
   }
 }
 
-TEST_CASE("cli merge: a part of the samples is a render of those, weighted by how many there are") {
+TEST_CASE("cli merge: a part of the samples is a render of those, weighted by how many there are", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -s 8 -q -o a.film --sample-range 0:2").code == 0);
   REQUIRE(folder.run("render ball.json -s 8 -q -o b.film --sample-range 2:5").code == 0);
@@ -66,7 +66,7 @@ TEST_CASE("cli merge: a part of the samples is a render of those, weighted by ho
   CHECK_THAT(holes.err, Contains("there are no samples"));
 }
 
-TEST_CASE("cli merge: parts of a scene and of its compiled file go together") {
+TEST_CASE("cli merge: parts of a scene and of its compiled file go together", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
   REQUIRE(folder.run("render ball.json -s 8 -q -o a.film --sample-range 0:2").code == 0);
@@ -78,7 +78,7 @@ TEST_CASE("cli merge: parts of a scene and of its compiled file go together") {
   CHECK(folder.read("m.exr") == folder.read("whole.exr"));
 }
 
-TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
+TEST_CASE("cli merge: doubled samples and other renders are refused by name", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -s 8 -q -o a.film --sample-range 0:5").code == 0);
   REQUIRE(folder.run("render ball.json -s 8 -q -o b.film --sample-range 4:8 --crop 8,4,20,9").code == 0);
@@ -102,7 +102,7 @@ TEST_CASE("cli merge: doubled samples and other renders are refused by name") {
 }
 
 // Two small films can be far apart: their sum is as large as the whole image.
-TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
+TEST_CASE("cli merge: the sum takes no more memory than is allowed", "[cli]") {
   const Folder folder;
   const std::string render = "render ball.json -s 1 -q --size 400x300 ";
   REQUIRE(folder.run(render + "-o a.film --crop 0,0,1,1").code == 0);
@@ -117,7 +117,7 @@ TEST_CASE("cli merge: the sum takes no more memory than is allowed") {
   CHECK(folder.run("merge whole.film -o m.png --limit memory=1e6").code == 65);
 }
 
-TEST_CASE("cli merge: what is full only together is said to be lost") {
+TEST_CASE("cli merge: what is full only together is said to be lost", "[cli]") {
   const Folder folder;
   folder.write("bright.json", R"({"version": 1, "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
       "film": {"width": 4, "height": 4}, "background": [4e8, 4e8, 4e8], "objects": [{"type": "sphere", "radius": 0.1}]})");
@@ -131,7 +131,7 @@ TEST_CASE("cli merge: what is full only together is said to be lost") {
 }
 
 // Regression: light of 1e-10 was black without a warning.
-TEST_CASE("cli merge: light too faint for the film is said to be") {
+TEST_CASE("cli merge: light too faint for the film is said to be", "[cli]") {
   const Folder folder;
   const auto render = [&](const std::string& background) {
     folder.write("faint.json", R"({"version": 1, "camera": {"position": [0, 0, 4], "target": [0, 0, 0]},
@@ -148,7 +148,7 @@ TEST_CASE("cli merge: light too faint for the film is said to be") {
   CHECK_THAT(render(R"({"bottom": [0, 0, 1e-12], "top": [1, 1, 1]})"), !Contains("too faint"));
 }
 
-TEST_CASE("cli merge: usage, files that are none, and outputs in the way") {
+TEST_CASE("cli merge: usage, files that are none, and outputs in the way", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -s 2 -q -o a.film").code == 0);
   CHECK(folder.run("merge -o m.exr").code == 2);

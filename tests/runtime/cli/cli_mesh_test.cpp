@@ -16,7 +16,7 @@ constexpr const char* kGround = R"({"version": 1, "objects": [{"type": "plane", 
 
 }  // namespace
 
-TEST_CASE("cli: mesh writes every format and states its bound") {
+TEST_CASE("cli: mesh writes every format and states its bound", "[cli]") {
   const Folder folder;
   for (const std::string ending : {"stl", "ply", "obj", "3mf", "glb"}) {
     const Result result = folder.run("mesh two.json --resolution 32 --unit mm -o part." + ending);
@@ -31,7 +31,7 @@ TEST_CASE("cli: mesh writes every format and states its bound") {
   CHECK_THAT(folder.read("part.mtl"), Contains("newmtl red\nKd 1 0 0"));
 }
 
-TEST_CASE("cli: mesh turns y to z on request, and takes a tolerance") {
+TEST_CASE("cli: mesh turns y to z on request, and takes a tolerance", "[cli]") {
   const Folder folder;
   const Result result = folder.run("mesh two.json --tolerance 0.2 --up z -o part.obj");
   CHECK(result.code == 0);
@@ -41,7 +41,7 @@ TEST_CASE("cli: mesh turns y to z on request, and takes a tolerance") {
   CHECK(folder.has("ball.stl"));
 }
 
-TEST_CASE("cli: mesh of a scene without end names the box") {
+TEST_CASE("cli: mesh of a scene without end names the box", "[cli]") {
   const Folder folder;
   folder.write("ground.json", kGround);
   const Result whole = folder.run("mesh ground.json -o a.stl");
@@ -54,7 +54,7 @@ TEST_CASE("cli: mesh of a scene without end names the box") {
   CHECK_THAT(beyond.err, Contains("nothing of the scene is in the box"));
 }
 
-TEST_CASE("cli: mesh names lost parts and their remedy") {
+TEST_CASE("cli: mesh names lost parts and their remedy", "[cli]") {
   const Folder folder;
   folder.write("leaf.json", R"({"version": 1, "objects": [{"type": "sphere", "radius": 0.5},
     {"name": "leaf", "type": "box", "half_size": [1, 0.001, 1], "translate": [0, 0.77, 0]}]})");
@@ -63,7 +63,7 @@ TEST_CASE("cli: mesh names lost parts and their remedy") {
   CHECK_THAT(result.err, Contains("warning: a part of `leaf`") && Contains("--tolerance 0.00"));
 }
 
-TEST_CASE("cli: mesh reports wrong options, too much memory and files that cannot be written") {
+TEST_CASE("cli: mesh reports wrong options, too much memory and files that cannot be written", "[cli]") {
   const Folder folder;
   const auto code = [&](const std::string& options) { return folder.run("mesh ball.json " + options).code; };
   CHECK(code("-o a.png") == 2);

@@ -25,7 +25,7 @@ const char* const kFar = R"({
 
 }  // namespace
 
-TEST_CASE("cli: eval takes the scene's points, far from zero too") {
+TEST_CASE("cli: eval takes the scene's points, far from zero too", "[cli]") {
   const Folder folder;
   folder.write("far.json", kFar);
   CHECK(folder.run("eval far.json --at 100002,0.5,0").out == "0.5 0 1 0 floor\n");
@@ -38,7 +38,7 @@ TEST_CASE("cli: eval takes the scene's points, far from zero too") {
   CHECK((lo <= 0.5 && lo > 0.2 && hi >= 1 && hi < 1.3));
 }
 
-TEST_CASE("cli: slice draws the scene's coordinates, far from zero too") {
+TEST_CASE("cli: slice draws the scene's coordinates, far from zero too", "[cli]") {
   const Folder folder;
   folder.write("far.json", kFar);
   folder.write("other.json", R"({"version": 1, "objects": [
@@ -55,7 +55,7 @@ TEST_CASE("cli: slice draws the scene's coordinates, far from zero too") {
   CHECK(inside("other.json --axis z --at -200000") == inside("other.json --axis y --at 100000"));
 }
 
-TEST_CASE("cli: dump says where the programs' origin is, check speaks of the scene") {
+TEST_CASE("cli: dump says where the programs' origin is, check speaks of the scene", "[cli]") {
   const Folder folder;
   folder.write("far.json", kFar);
   CHECK_THAT(folder.run("dump far.json").out,

@@ -43,7 +43,7 @@ std::string text_of(const Setting&, typename Setting::Value value) {
 
 }  // namespace
 
-TEST_CASE("cli settings: an option and the scene's property change the film's row alike") {
+TEST_CASE("cli settings: an option and the scene's property change the film's row alike", "[cli]") {
   int settings = 0;
   compiler::for_each_setting([&](const auto& setting) {
     using Setting = std::remove_cvref_t<decltype(setting)>;

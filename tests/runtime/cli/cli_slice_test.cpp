@@ -15,7 +15,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
+TEST_CASE("cli: slice counts the pixels inside and writes a picture of them", "[cli]") {
   const Folder folder;
   // An 8 by 8 grid over [-1, 1]^2 has 12 pixel centres within the radius 0.5: 4 by 4 without the corners.
   const Result sign = folder.run("slice ball.json -o a.png --show sign --box -1,-1,1,1 --size 8x8");
@@ -34,7 +34,7 @@ TEST_CASE("cli: slice counts the pixels inside and writes a picture of them") {
   CHECK(inside("--axis x --at 2 --box -2,-1,0,1 --threads 3") == "inside 50 of 100 pixels\n");
 }
 
-TEST_CASE("cli: slice says how far its lines are apart") {
+TEST_CASE("cli: slice says how far its lines are apart", "[cli]") {
   const Folder folder;
   const Result result = folder.run("slice ball.json --box -1,-1,1,1 --size 9x9");
   CHECK(result.code == 0);
@@ -46,7 +46,7 @@ TEST_CASE("cli: slice says how far its lines are apart") {
   CHECK(folder.files() == 4);
 }
 
-TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no data") {
+TEST_CASE("cli: a picture that cannot be written is exit code 74 and prints no data", "[cli]") {
   const Folder folder;
   for (const char* output : {"missing/out.png", "ball.json/out.png"}) {
     const Result result = folder.run(std::string("slice ball.json -o ") + output);

@@ -17,7 +17,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: files that cannot be read or written are exit code 74") {
+TEST_CASE("cli: files that cannot be read or written are exit code 74", "[cli]") {
   const Folder folder;
   for (const char* verb : {"render", "check", "dump", "eval --at 0,0,0", "slice"}) {
     const Result result = folder.run(std::string(verb) + " missing.json");
@@ -37,7 +37,7 @@ TEST_CASE("cli: files that cannot be read or written are exit code 74") {
   CHECK(folder.files() == 2);
 }
 
-TEST_CASE("cli: no output may overwrite the scene or another output") {
+TEST_CASE("cli: no output may overwrite the scene or another output", "[cli]") {
   const Folder folder;
   for (const char* outputs : {"-o out.png --stats-json ball.json", "-o out.png --stats-json ./out.png",
                               "-o a.png -a -o a-albedo.png", "-o a.png -o ./a.png"}) {
@@ -51,7 +51,7 @@ TEST_CASE("cli: no output may overwrite the scene or another output") {
   CHECK(folder.read("scene.png") == kBall);
 }
 
-TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
+TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture", "[cli]") {
   const Folder folder;
   folder.write("bad.json", R"({"version": 1, "objects": [{"type": "spere", "radius": 1}, {"type": "box"}]})");
   const Result render = folder.run("render bad.json -o bad.png");
@@ -71,7 +71,7 @@ TEST_CASE("cli: a bad scene prints diagnostics and leaves no picture") {
   CHECK(folder.run("check bad.json --error-format json").err.front() == '{');
 }
 
-TEST_CASE("cli: the scenes that come with the program have no errors and no warnings but one", "[heavy]") {
+TEST_CASE("cli: the scenes that come with the program have no errors and no warnings but one", "[cli][heavy]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json" && entry.path().extension() != ".fathom") continue;
@@ -90,7 +90,7 @@ TEST_CASE("cli: the scenes that come with the program have no errors and no warn
   CHECK(scenes > 0);
 }
 
-TEST_CASE("cli: check reports on stdout, and warnings are no failure") {
+TEST_CASE("cli: check reports on stdout, and warnings are no failure", "[cli]") {
   const Folder folder;
   folder.write("unused.json", R"({"version": 1, "materials": {"red": {"type": "diffuse"}},
     "objects": [{"type": "sphere", "radius": 1}]})");
@@ -101,7 +101,7 @@ TEST_CASE("cli: check reports on stdout, and warnings are no failure") {
   CHECK(folder.run("check ball.json").err == "");
 }
 
-TEST_CASE("cli: eval prints distance, gradient and name") {
+TEST_CASE("cli: eval prints distance, gradient and name", "[cli]") {
   const Folder folder;
   CHECK(folder.run("eval ball.json --at 0,2,0").out == "1.5 0 1 0 ball\n");
   CHECK(folder.run("eval ball.json --at -3,0,4 --number f32").out == "4.5 -0.6 0 0.8 ball\n");
@@ -118,7 +118,7 @@ TEST_CASE("cli: eval prints distance, gradient and name") {
   CHECK_THAT(folder.run("eval ball.json --at 1,0,0 --number range").out, Contains(" "));
 }
 
-TEST_CASE("cli: eval reads points from a file, and names the line that is none") {
+TEST_CASE("cli: eval reads points from a file, and names the line that is none", "[cli]") {
   const Folder folder;
   folder.write("points.txt", "# above\n0 2 0\n\n  \t\r\n3, 0, 0\n");
   CHECK(folder.run("eval ball.json --points points.txt").out == "1.5 0 1 0 ball\n2.5 1 0 0 ball\n");
@@ -130,7 +130,7 @@ TEST_CASE("cli: eval reads points from a file, and names the line that is none")
   CHECK_THAT(bad.err, Contains("bad.txt:2: `0 2` is not a point"));
 }
 
-TEST_CASE("cli: render writes the picture, and what is asked for beside it") {
+TEST_CASE("cli: render writes the picture, and what is asked for beside it", "[cli]") {
   const Folder folder;
   const Result result = folder.run("render ball.json -o a.png -o b.jpg -a -d -n --stats-json stats.json");
   CHECK(result.code == 0);
@@ -145,7 +145,7 @@ TEST_CASE("cli: render writes the picture, and what is asked for beside it") {
   CHECK_THAT(folder.read("stats.json"), Contains("\"primary_rays\": 1024"));  // 32 * 16 * 2
 }
 
-TEST_CASE("cli: without -o the picture is named after the scene, in the current folder") {
+TEST_CASE("cli: without -o the picture is named after the scene, in the current folder", "[cli]") {
   const Folder folder;
   const Result result = folder.run("render ./ball.json");
   CHECK(result.code == 0);
@@ -155,7 +155,7 @@ TEST_CASE("cli: without -o the picture is named after the scene, in the current 
   CHECK(folder.has("out.png"));
 }
 
-TEST_CASE("cli: flags override the scene") {
+TEST_CASE("cli: flags override the scene", "[cli]") {
   const Folder folder;
   const auto size = [&](const std::string& flags) {
     REQUIRE(folder.run("render ball.json -o a.png " + flags).code == 0);
@@ -187,7 +187,7 @@ TEST_CASE("cli: flags override the scene") {
   }
 }
 
-TEST_CASE("cli: how samples and light are found, from the command line and the scene") {
+TEST_CASE("cli: how samples and light are found, from the command line and the scene", "[cli]") {
   const Folder folder;
   const std::string scene = R"({"version": 1, "film": {"width": 48, "height": 32}, "render": {"spp": 8%},
       "background": [0.1, 0.1, 0.1], "camera": {"position": [0, 1, 4]},
@@ -230,7 +230,7 @@ TEST_CASE("cli: how samples and light are found, from the command line and the s
   CHECK(folder.run("render lit.json --clamp 1 -q -o a.png").err == "");
 }
 
-TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none") {
+TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none", "[cli]") {
   const Folder folder;
   const std::string rest = R"("film": {"width": 8, "height": 8}, "objects": [{"type": "sphere", "radius": 1}]})";
   folder.write("lens.json", R"({"version": 1, "camera": {"focal_length": 50}, )" + rest);
@@ -245,7 +245,7 @@ TEST_CASE("cli: --fov takes the place of a focal length, and a panorama has none
   CHECK(folder.run("render round.json").code == 0);
 }
 
-TEST_CASE("cli: an orthographic camera has no field of view to override") {
+TEST_CASE("cli: an orthographic camera has no field of view to override", "[cli]") {
   const Folder folder;
   folder.write("flat.json", R"({"version": 1, "camera": {"type": "orthographic"}, "film": {"width": 8, "height": 8},
     "objects": [{"type": "sphere", "radius": 1}]})");
@@ -255,7 +255,7 @@ TEST_CASE("cli: an orthographic camera has no field of view to override") {
   CHECK(folder.run("render flat.json").code == 0);
 }
 
-TEST_CASE("cli: -v says more each time, up to six") {
+TEST_CASE("cli: -v says more each time, up to six", "[cli]") {
   const Folder folder;
   std::size_t shorter = 0;
   for (const char* flags : {"", "-v", "-vv", "-vvv", "-vvvv", "-vvvvv", "-vvvvvv"}) {
@@ -268,7 +268,7 @@ TEST_CASE("cli: -v says more each time, up to six") {
   CHECK(folder.run("render ball.json -o a.png -q").err == "");
 }
 
-TEST_CASE("cli: output that is not a terminal has no colours and no redrawn lines") {
+TEST_CASE("cli: output that is not a terminal has no colours and no redrawn lines", "[cli]") {
   const Folder folder;
   folder.write("bad.json", "{");
   for (const char* arguments : {"render ball.json -o a.png", "check bad.json"}) {

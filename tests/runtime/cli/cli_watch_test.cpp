@@ -27,7 +27,7 @@ const char* const kNoisy = R"({
 
 }  // namespace
 
-TEST_CASE("cli: --denoise keeps the noisy picture beside the denoised one") {
+TEST_CASE("cli: --denoise keeps the noisy picture beside the denoised one", "[cli]") {
   const Folder folder;
   folder.write("noisy.json", kNoisy);
   const Result result = folder.run("render noisy.json -o a.png -o a.exr --denoise");
@@ -47,7 +47,7 @@ TEST_CASE("cli: --denoise keeps the noisy picture beside the denoised one") {
   CHECK(folder.read("b.exr") == folder.read("c.exr"));
 }
 
-TEST_CASE("cli: what cannot be denoised is a matter of usage") {
+TEST_CASE("cli: what cannot be denoised is a matter of usage", "[cli]") {
   const Folder folder;
   const Result single = folder.run("render ball.json -o a.png --denoise -s 1");
   CHECK(single.code == 2);
@@ -57,7 +57,7 @@ TEST_CASE("cli: what cannot be denoised is a matter of usage") {
   CHECK(folder.files() == 2);
 }
 
-TEST_CASE("cli: --preview is a quarter of each side, of few samples, denoised") {
+TEST_CASE("cli: --preview is a quarter of each side, of few samples, denoised", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -o a.png --preview").code == 0);
   CHECK(png_size(folder.read("a.png")) == std::pair(8, 4));
@@ -70,7 +70,7 @@ TEST_CASE("cli: --preview is a quarter of each side, of few samples, denoised") 
   CHECK(png_size(folder.read("d.png")) == std::pair(1, 1));
 }
 
-TEST_CASE("cli: --watch draws again when the file changes, and outlives errors") {
+TEST_CASE("cli: --watch draws again when the file changes, and outlives errors", "[cli]") {
   const Folder folder;
   folder.write("flat.json",
                R"({"version": 1, "film": {"width": 16, "height": 8}, "render": {"spp": 2}, "background": [1, 1, 1],
@@ -98,7 +98,7 @@ TEST_CASE("cli: --watch draws again when the file changes, and outlives errors")
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }
 
-TEST_CASE("cli: standard input cannot be watched") {
+TEST_CASE("cli: standard input cannot be watched", "[cli]") {
   const Result result = Folder().run("render - -o a.png --watch", kBall);
   CHECK(result.code == 2);
   CHECK_THAT(result.err, Contains("standard input"));

@@ -90,7 +90,7 @@ double relmse(const Scene& scene, const Pixels& picture) {
   return compare(scene.view(picture), scene.view(scene.truth)).relmse;
 }
 
-TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noise", "[runtime][released]") {
+TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noise", "[denoise][released]") {
   for (const int samples : {1, 4, 16}) {
     CAPTURE(samples);
     const Scene scene = draw(96, 80, room, exponential(samples));
@@ -103,7 +103,7 @@ TEST_CASE("denoise: the error falls to a fifth and less, for weak and strong noi
   }
 }
 
-TEST_CASE("denoise: a picture without noise stays as it is", "[runtime]") {
+TEST_CASE("denoise: a picture without noise stays as it is", "[denoise]") {
   const Scene flat = draw(
       40, 30,
       [](int, int) {
@@ -116,7 +116,7 @@ TEST_CASE("denoise: a picture without noise stays as it is", "[runtime]") {
   CHECK(compare(detailed.view(denoise(detailed.input(), 1)), detailed.view(detailed.truth)).max <= 1e-5);
 }
 
-TEST_CASE("denoise: nothing bleeds over an edge of albedo, normal or depth", "[runtime]") {
+TEST_CASE("denoise: nothing bleeds over an edge of albedo, normal or depth", "[denoise]") {
   const auto left = [](int x) { return x < 24; };
   const Surface base{{0.5f, 0.5f, 0.5f}, {0, 0, 1}, 2, 1};
   const Seen edges[] = {[&](int x, int) {
@@ -149,7 +149,7 @@ TEST_CASE("denoise: nothing bleeds over an edge of albedo, normal or depth", "[r
   }
 }
 
-TEST_CASE("denoise: what is not finite does not spread and is filled", "[runtime]") {
+TEST_CASE("denoise: what is not finite does not spread and is filled", "[denoise]") {
   Scene scene = draw(64, 48, room, exponential(4));
   const Pixels clean = denoise(scene.input(), 1);
   scene.first[3 * scene.at(20, 20)] = NAN;
@@ -164,7 +164,7 @@ TEST_CASE("denoise: what is not finite does not spread and is filled", "[runtime
   CHECK(result[lost] == Approx(scene.truth[lost]).epsilon(0.3));
 }
 
-TEST_CASE("denoise: a firefly goes down and its light stays near", "[runtime]") {
+TEST_CASE("denoise: a firefly goes down and its light stays near", "[denoise]") {
   Scene scene = draw(
       64, 48,
       [](int, int) {
@@ -179,7 +179,7 @@ TEST_CASE("denoise: a firefly goes down and its light stays near", "[runtime]") 
   for (const float value : result) REQUIRE((value >= 0 && std::isfinite(value)));
 }
 
-TEST_CASE("denoise: a firefly has no edge where the window ends", "[runtime]") {
+TEST_CASE("denoise: a firefly has no edge where the window ends", "[denoise]") {
   Scene scene = draw(
       64, 64,
       [](int, int) {
@@ -209,7 +209,7 @@ TEST_CASE("denoise: a firefly has no edge where the window ends", "[runtime]") {
   CHECK(added(9, 12) < 0.02 * near);    // in the corners of the square around the window
 }
 
-TEST_CASE("denoise: scales with the light", "[runtime]") {
+TEST_CASE("denoise: scales with the light", "[denoise]") {
   const Scene scene = draw(48, 40, room, exponential(2));
   Scene bright = scene;
   for (Pixels* pixels : {&bright.first, &bright.second}) {
@@ -220,7 +220,7 @@ TEST_CASE("denoise: scales with the light", "[runtime]") {
 }
 
 // A ball on a floor under a ring of light.
-TEST_CASE("denoise: a rendered picture has less than half the error", "[runtime][heavy]") {
+TEST_CASE("denoise: a rendered picture has less than half the error", "[denoise][heavy]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 1.5, 4], "target": [0, 0, 0]},
       "materials": {"glow": {"type": "emissive", "emission": [20, 20, 20]}},
       "objects": [{"type": "torus", "major_radius": 0.4, "minor_radius": 0.1, "translate": [0, 2, 0.5], "material": "glow"},
@@ -252,21 +252,21 @@ TEST_CASE("denoise: a rendered picture has less than half the error", "[runtime]
   CHECK(error(denoised) < error(noisy) / 2);
 }
 
-TEST_CASE("denoise: any number of threads gives the same bits", "[runtime]") {
+TEST_CASE("denoise: any number of threads gives the same bits", "[denoise]") {
   const Scene scene = draw(150, 70, room, exponential(2));
   const Pixels one = denoise(scene.input(), 1);
   CHECK(denoise(scene.input(), 2) == one);
   CHECK(denoise(scene.input(), 3) == one);
 }
 
-TEST_CASE("denoise: pictures of a pixel, a row and a column", "[runtime]") {
+TEST_CASE("denoise: pictures of a pixel, a row and a column", "[denoise]") {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(30, 1), std::pair(1, 30)}) {
     const Scene scene = draw(width, height, room, exponential(4));
     for (const float value : denoise(scene.input(), 2)) CHECK(std::isfinite(value));
   }
 }
 
-TEST_CASE("denoise: a film keeps all but its radiance, and all of it when cancelled", "[runtime]") {
+TEST_CASE("denoise: a film keeps all but its radiance, and all of it when cancelled", "[denoise]") {
   Film film(PixelRect{100, 50, 124, 66}, {.halves = true});
   const Noise noise = exponential(1);
   for (int y = 0; y < 16; ++y) {

@@ -36,7 +36,7 @@ bool builds(const compiler::CompiledScene& scene, double evaluations) {
 
 const std::string kUnion = R"("union")";
 
-TEST_CASE("region forecast: scattered bodies have regions in all pictures except the smallest", "[regions]") {
+TEST_CASE("region forecast: scattered bodies have regions in all pictures except the smallest", "[field][regions]") {
   const compiler::CompiledScene scene = balls(2000, 0.02, kUnion);
   CHECK_FALSE(builds(scene, 1e4));
   CHECK(builds(scene, 2e6));
@@ -44,19 +44,19 @@ TEST_CASE("region forecast: scattered bodies have regions in all pictures except
 }
 
 // Regression: building gave up after as much time as the picture took, because each cell holds hundreds of the balls.
-TEST_CASE("region forecast: bodies that overlap everywhere have regions in large pictures", "[regions]") {
+TEST_CASE("region forecast: bodies that overlap everywhere have regions in large pictures", "[field][regions]") {
   const compiler::CompiledScene scene = balls(2000, 0.5, kUnion);
   CHECK_FALSE(builds(scene, 5e5));
   CHECK(builds(scene, 1e8));
 }
 
-TEST_CASE("region forecast: leaves that are as expensive as the whole program do not pay", "[regions]") {
+TEST_CASE("region forecast: leaves that are as expensive as the whole program do not pay", "[field][regions]") {
   // All balls blend with each other everywhere, so no cell has a part that is shorter.
   CHECK_FALSE(builds(balls(600, 0.5, R"("smooth_union", "k": 4)"), 1e8));
   CHECK(builds(balls(600, 0.02, R"("smooth_union", "k": 0.02)"), 1e8));
 }
 
-TEST_CASE("region forecast: without limits the leaves have the normal number of choices", "[regions]") {
+TEST_CASE("region forecast: without limits the leaves have the normal number of choices", "[field][regions]") {
   const compiler::CompiledScene scene = balls(2000, 0.02, kUnion);
   runtime::Field field = runtime::make_field(scene);
   add_regions(field, scene, {});

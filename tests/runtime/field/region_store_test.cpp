@@ -35,7 +35,7 @@ RegionOptions options() {
   return options;
 }
 
-TEST_CASE("region store: the same program, box and options have the same regions; others their own") {
+TEST_CASE("region store: the same program, box and options have the same regions; others their own", "[field]") {
   const compiler::CompiledScene a = balls(0), same = balls(0), moved = balls(0.1);
   RegionStore store;
   const auto first = store.build(a.surface, a.contents, options());
@@ -54,7 +54,7 @@ TEST_CASE("region store: the same program, box and options have the same regions
   CHECK(store.build(a.surface, a.contents, larger) != first);
 }
 
-TEST_CASE("region store: what was not asked for is forgotten, and lives on with who has it") {
+TEST_CASE("region store: what was not asked for is forgotten, and lives on with who has it", "[field]") {
   std::shared_ptr<const runtime::Regions> first;
   RegionStore store;
   {
@@ -75,7 +75,7 @@ TEST_CASE("region store: what was not asked for is forgotten, and lives on with 
   CHECK(first->evaluate(glm::dvec3(0, 0, 0.3), scratch, instructions) == Approx(0).margin(1e-9));
 }
 
-TEST_CASE("region store: those that were interrupted are not kept, those that cannot be are") {
+TEST_CASE("region store: those that were interrupted are not kept, those that cannot be are", "[field]") {
   const compiler::CompiledScene a = balls(0);
   RegionStore store;
   RegionOptions interrupted = options();
@@ -88,7 +88,8 @@ TEST_CASE("region store: those that were interrupted are not kept, those that ca
   CHECK_FALSE(store.build(a.surface, a.contents, tiny));
 }
 
-TEST_CASE("region store: a render with kept regions has the bits of one without, and says that they are kept") {
+TEST_CASE("region store: a render with kept regions has the bits of one without, and says that they are kept",
+          "[field]") {
   const compiler::CompiledScene first = balls(0), other_light = balls(0, 0.5);
   runtime::RenderOptions options;
   const std::uint64_t wanted = runtime::render(other_light, options).film.hash();

@@ -136,7 +136,7 @@ Differences compare(const vm::VerifiedProgram& program, const Regions& regions, 
 
 // Regression: with regions, rays took other steps, because regions returned less than the distance where nothing was
 // near.
-TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float and in double", "[regions]") {
+TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float and in double", "[field][regions]") {
   for (const bool blend : {false, true}) {
     for (const bool ground : {false, true}) {
       const compiler::CompiledScene scene = test::compiled(many(400, blend, ground, true));
@@ -159,7 +159,7 @@ TEST_CASE("regions: the whole program's rounded distances, bit for bit, in float
   }
 }
 
-TEST_CASE("regions: random scenes of every kind of node are cut without a wrong value", "[regions]") {
+TEST_CASE("regions: random scenes of every kind of node are cut without a wrong value", "[field][regions]") {
   std::size_t built = 0, wrong = 0, rounded = 0;
   for (int seed = 0; seed < test::scaled_cases(60); ++seed) {
     Random random(seed);
@@ -197,7 +197,7 @@ TEST_CASE("regions: random scenes of every kind of node are cut without a wrong 
   CHECK(rounded > static_cast<std::size_t>(test::scaled_cases(1000)));
 }
 
-TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]") {
+TEST_CASE("regions: gradients and surfaces are the whole program's", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
   const Field field = with_regions(scene);
   const Sample at = sample(40000, 1.1, 3);
@@ -223,7 +223,8 @@ TEST_CASE("regions: gradients and surfaces are the whole program's", "[regions]"
   CHECK(near > 1000);
 }
 
-TEST_CASE("regions: the same tree for any number of threads, the same values on every instruction set", "[regions]") {
+TEST_CASE("regions: the same tree for any number of threads, the same values on every instruction set",
+          "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   const Sample at = sample(kMaxPoints, 1.1, 5);
   std::vector<std::uint32_t> expected;
@@ -250,7 +251,7 @@ TEST_CASE("regions: the same tree for any number of threads, the same values on 
   vm::force_isa(before);
 }
 
-TEST_CASE("regions: stay within the memory they are given", "[regions]") {
+TEST_CASE("regions: stay within the memory they are given", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   const std::size_t freely = with_regions(scene).regions->summary().bytes;
   std::size_t built = 0;
@@ -265,7 +266,7 @@ TEST_CASE("regions: stay within the memory they are given", "[regions]") {
   CHECK(built < 5);
 }
 
-TEST_CASE("regions: building them stops where it is told to", "[regions]") {
+TEST_CASE("regions: building them stops where it is told to", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   for (const int threads : {1, 3}) {
     std::atomic<int> asked = 0;
@@ -278,7 +279,7 @@ TEST_CASE("regions: building them stops where it is told to", "[regions]") {
   }
 }
 
-TEST_CASE("regions: a small picture is not worth building them", "[regions]") {
+TEST_CASE("regions: a small picture is not worth building them", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, false, false));
   Field field = make_field(scene);
   add_regions(field, scene, {.evaluations = 1000});
@@ -287,7 +288,7 @@ TEST_CASE("regions: a small picture is not worth building them", "[regions]") {
   CHECK(field.regions);
 }
 
-TEST_CASE("regions: rays meet what they meet without them, to the bit", "[regions]") {
+TEST_CASE("regions: rays meet what they meet without them, to the bit", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(400, true, true, true));
   const Field cut = with_regions(scene), whole = make_field(scene);
   Random random(11);
@@ -320,7 +321,7 @@ RenderOptions part_of_picture() {
 // Regression: regions reached their memory limit late enough for another attempt with 1 and 2 threads, but not with
 // more. Images with large regions, small ones and none were different.
 TEST_CASE("regions: one picture with and without them, near the limit of memory, for any number of threads",
-          "[regions]") {
+          "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(1200, true, true, true));
   const std::size_t freely = with_regions(scene).regions->summary().bytes;
   RenderOptions options = part_of_picture();
@@ -346,7 +347,7 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
 
 // Regression: a time limit did not stop the building of regions, which takes up to half a minute. Another limit gave
 // other regions, so a resumed render counted other costs.
-TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[regions]") {
+TEST_CASE("regions: a limit of time ends building them, except where costs are kept", "[field][regions]") {
   const compiler::CompiledScene scene = test::compiled(many(1200, true, true, true));
   RenderOptions options = part_of_picture();
   const RenderResult freely = render(scene, options);
@@ -361,7 +362,7 @@ TEST_CASE("regions: a limit of time ends building them, except where costs are k
 
 // Regression: building took ten times the allowed memory. A cell keeps its pruned program until the cell is split,
 // and in a wide scene each cell of the first levels keeps most of the program.
-TEST_CASE("regions: scenes that take many times their memory to build have none", "[regions][released]") {
+TEST_CASE("regions: scenes that take many times their memory to build have none", "[field][regions][released]") {
   const compiler::CompiledScene scene = test::compiled(grid(100));
   const auto facts_of = [&](std::size_t memory) {
     const auto regions = Regions::build(scene.surface, scene.contents, {.memory = memory});
@@ -373,7 +374,7 @@ TEST_CASE("regions: scenes that take many times their memory to build have none"
   CHECK(facts_of(freely.building / 2 - 1).bytes == 0);
 }
 
-TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[regions]") {
+TEST_CASE("regions: small scenes have none, and scenes that cannot be cut", "[field][regions]") {
   const auto regions_of = [](const std::string& text) {
     const compiler::CompiledScene scene = test::compiled(text);
     Field field = make_field(scene);

@@ -26,7 +26,7 @@ compiler::CompiledScene scene_with(const std::string& formula, bool ground) {
   return scene_of("\"objects\": [" + object + (ground ? kGround : "") + "]");
 }
 
-TEST_CASE("slope cells: a ball of a point's radius holds no zero", "[runtime]") {
+TEST_CASE("slope cells: a ball of a point's radius holds no zero", "[field]") {
   Random random(3);
   for (const std::string formula :
        {"y - 0.4 * floor(3 * x + z)", "y - 0.3 * tan(1.3 * x)", "sqrt(abs(x)) - 0.4", kHeart.c_str()}) {
@@ -54,7 +54,7 @@ TEST_CASE("slope cells: a ball of a point's radius holds no zero", "[runtime]") 
   }
 }
 
-TEST_CASE("slope cells: the radius of one point is that of many", "[runtime]") {
+TEST_CASE("slope cells: the radius of one point is that of many", "[field]") {
   const auto scene = scene_with("y - 0.4 * floor(3 * x + z)", true);
   const Field field = make_field(scene);
   Random random(4);
@@ -78,14 +78,14 @@ TEST_CASE("slope cells: the radius of one point is that of many", "[runtime]") {
 
 // A field that is level over most of the cells that may hold a zero has float errors of any size there. Regression:
 // their median, 1e29, counted as the error of the whole field.
-TEST_CASE("slope cells: a level field has a cancellation of the size of its box", "[runtime]") {
+TEST_CASE("slope cells: a level field has a cancellation of the size of its box", "[field]") {
   const auto scene = scene_with("max(length(x, y, z) - 0.9, 0) + 0.2 * floor(x + 0.99) ", false);
   const Field field = make_field(scene);
   REQUIRE(field.cells);
   CHECK(field.cancellation < 200);
 }
 
-TEST_CASE("slope cells: they take little memory", "[runtime]") {
+TEST_CASE("slope cells: they take little memory", "[field]") {
   const Field field = make_field(scene_with("y - 0.4 * floor(3 * x + z)", true));
   CHECK(field.cells->bytes() < 2u << 20);
 }

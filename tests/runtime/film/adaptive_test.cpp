@@ -33,7 +33,7 @@ struct Sum {
 
 using Ends = std::array<std::uint32_t, 2>;
 
-TEST_CASE("adaptive: judgements double the samples up to half of them, one without a threshold") {
+TEST_CASE("adaptive: judgements double the samples up to half of them, one without a threshold", "[film]") {
   const auto rounds = [](int spp, double threshold) {
     std::vector<std::uint32_t> ends;
     for (std::uint32_t end = 0; (end = next_round(end, spp, threshold)) != 0;) ends.push_back(end);
@@ -61,7 +61,7 @@ void put(Film& film, std::size_t half, const std::function<float(int x)>& spread
   film.merge(part, stage);
 }
 
-TEST_CASE("adaptive: noise is the root of the mean of variance over brightness, of the pixels of a half") {
+TEST_CASE("adaptive: noise is the root of the mean of variance over brightness, of the pixels of a half", "[film]") {
   Film film(4, 1, {.variance = true});
   put(film, 0, [](int x) { return x == 0 ? 1.0f : 0.0f; });
   put(film, 1, [](int) { return 0.5f; });
@@ -73,7 +73,7 @@ TEST_CASE("adaptive: noise is the root of the mean of variance over brightness, 
   CHECK(std::isinf(noise_of(film, {0, 0, 1, 1}, 1)));  // no such pixel: never quiet
 }
 
-TEST_CASE("adaptive: each half is judged by the other, and by samples that no mean uses") {
+TEST_CASE("adaptive: each half is judged by the other, and by samples that no mean uses", "[film]") {
   Film film(16, 16, {.variance = true});
   film.add_stage();
   AdaptiveState state;
@@ -91,7 +91,7 @@ TEST_CASE("adaptive: each half is judged by the other, and by samples that no me
   CHECK(state.tiles[0].ends == Ends{402, 2});
 }
 
-TEST_CASE("adaptive: shares use up the budget, by the root of the other half's deviation") {
+TEST_CASE("adaptive: shares use up the budget, by the root of the other half's deviation", "[film]") {
   Film film(96, 16, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(6)};
   // By half 0 the left of the image has a quarter of the deviation of the right; by half 1 all of it is alike.
@@ -108,7 +108,8 @@ TEST_CASE("adaptive: shares use up the budget, by the root of the other half's d
   CHECK(static_cast<double>(state.tiles[5].ends[1]) / state.tiles[0].ends[1] == Approx(2).margin(0.1));
 }
 
-TEST_CASE("adaptive: no share is below half or above four times the average, or below what is taken already") {
+TEST_CASE("adaptive: no share is below half or above four times the average, or below what is taken already",
+          "[film]") {
   Film film(16 * 40, 16, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(40)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int x) { return x >= 304 && x < 336 ? 0.99f : 1e-4f; });
@@ -122,7 +123,7 @@ TEST_CASE("adaptive: no share is below half or above four times the average, or 
   CHECK(late.tiles[0].ends[0] >= 60);
 }
 
-TEST_CASE("adaptive: a share is no larger than the threshold asks for") {
+TEST_CASE("adaptive: a share is no larger than the threshold asks for", "[film]") {
   Film film(64, 16, {.variance = true});
   film.add_stage();
   for (const std::size_t half : {0, 1}) put(film, half, [](int) { return 0.1f; });
@@ -133,7 +134,7 @@ TEST_CASE("adaptive: a share is no larger than the threshold asks for") {
   for (const AdaptiveTile& tile : state.tiles) CHECK((tile.ends[0] == 8 && tile.ends[1] == 8));
 }
 
-TEST_CASE("adaptive: without noise all pixels have the same number") {
+TEST_CASE("adaptive: without noise all pixels have the same number", "[film]") {
   Film film(64, 32, {.variance = true});
   AdaptiveState state{2, std::vector<AdaptiveTile>(8)};
   for (const std::size_t half : {0, 1}) put(film, half, [](int) { return 0.0f; });
@@ -175,7 +176,7 @@ glm::dvec3 mean_of(const Film& film, PixelRect cell) {
 }
 
 // 64x48 pixels are 12 tiles, whose samples range from 8 to about 30 per pixel.
-TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance they say", "[render][heavy]") {
+TEST_CASE("adaptive: renders have the mean of uniform ones, and the variance they say", "[film][render][heavy]") {
   const auto scene = floor_and_sky();
   const auto options_of = [](LightSampling sampling) {
     RenderOptions options = adaptive_options(64, 48, 16);
@@ -222,7 +223,7 @@ compiler::CompiledScene floor_and_area_light() {
 }
 
 // As a control, stopping by the samples that are kept is biased.
-TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][heavy]") {
+TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[film][render][heavy]") {
   const auto scene = floor_and_area_light();
   constexpr double kThreshold = 0.25;
   constexpr int kMost = 256;
@@ -260,7 +261,7 @@ TEST_CASE("adaptive: ending below a threshold leaves the mean alone", "[render][
   CHECK(samples.mean() < 0.9 * kMost);
 }
 
-TEST_CASE("adaptive: the whole budget is used, most of it where the noise is", "[render]") {
+TEST_CASE("adaptive: the whole budget is used, most of it where the noise is", "[film][render]") {
   RenderOptions options = adaptive_options(64, 64, 16);
   std::vector<double> fractions;
   options.on_progress = [&](const Progress& progress) { fractions.push_back(progress.fraction); };
@@ -286,7 +287,7 @@ TEST_CASE("adaptive: the whole budget is used, most of it where the noise is", "
   CHECK(fractions.back() == 1);
 }
 
-TEST_CASE("adaptive: threads and tiles leave no trace", "[render][threads]") {
+TEST_CASE("adaptive: threads and tiles leave no trace", "[film][render][threads]") {
   const auto scene = floor_and_sky();
   for (const compiler::SamplerKind sampler : {compiler::SamplerKind::Blue, compiler::SamplerKind::Independent}) {
     for (const double threshold : {0.0, 0.08}) {
@@ -311,7 +312,7 @@ TEST_CASE("adaptive: threads and tiles leave no trace", "[render][threads]") {
   }
 }
 
-TEST_CASE("adaptive: quiet tiles end early, and a render below its threshold says so", "[render]") {
+TEST_CASE("adaptive: quiet tiles end early, and a render below its threshold says so", "[film][render]") {
   RenderOptions options = adaptive_options(48, 32, 256, 1e6);
   const RenderResult quiet = render(floor_and_sky(), options);
   CHECK(quiet.stats.end == RenderEnd::Noise);
@@ -322,7 +323,7 @@ TEST_CASE("adaptive: quiet tiles end early, and a render below its threshold say
   CHECK(all.film.samples() > 48u * 32u * 250u);
 }
 
-TEST_CASE("adaptive: with too few samples to share out all pixels have as many", "[render]") {
+TEST_CASE("adaptive: with too few samples to share out all pixels have as many", "[film][render]") {
   const auto scene = floor_and_sky();
   RenderOptions options = adaptive_options(16, 16, kMinAdaptiveSpp - 1);
   const RenderResult scaled_cases = render(scene, options);
@@ -334,7 +335,7 @@ TEST_CASE("adaptive: with too few samples to share out all pixels have as many",
   CHECK_FALSE(render(scene, options).settings.noise_threshold);
 }
 
-TEST_CASE("adaptive: an interrupted render goes on to the same bits", "[render][threads][released]") {
+TEST_CASE("adaptive: an interrupted render goes on to the same bits", "[film][render][threads][released]") {
   const auto scene = floor_and_sky();
   for (const double threshold : {0.0, 0.08}) {
     RenderOptions options = adaptive_options(50, 34, 96, threshold);
@@ -379,7 +380,7 @@ double relative_error(const Film& film, const Film& truth) {
 
 // A floor below a uniform sky, lit by a caustic through a glass ball: only the few paths that hit the lamp find its
 // light.
-TEST_CASE("adaptive: a caustic has less error than with as many samples everywhere", "[render][heavy]") {
+TEST_CASE("adaptive: a caustic has less error than with as many samples everywhere", "[film][render][heavy]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 1.2, 6], "target": [0, 1.8, 0], "fov": 50},
       "background": [0.3, 0.3, 0.3],
       "materials": {"floor": {"type": "diffuse", "color": [0.7, 0.7, 0.7]}, "glass": {"type": "transparent"},

@@ -56,7 +56,7 @@ FilmLayers every_layer() {
   return layers;
 }
 
-TEST_CASE("film files: what is written is read back, with every layer or none, of one stage or four") {
+TEST_CASE("film files: what is written is read back, with every layer or none, of one stage or four", "[film]") {
   const test::TemporaryFolder folder;
   for (const FilmLayers layers : {FilmLayers{}, every_layer(), FilmLayers{.first_hit = false, .halves = true}}) {
     for (const bool adaptive : {false, true}) {
@@ -81,7 +81,7 @@ TEST_CASE("film files: what is written is read back, with every layer or none, o
   }
 }
 
-TEST_CASE("film files: every flipped bit and every truncation is found") {
+TEST_CASE("film files: every flipped bit and every truncation is found", "[film]") {
   const test::TemporaryFolder folder;
   const FilmFile wrote = small_file(every_layer(), true);
   const std::string path = folder.file("a.film");
@@ -106,7 +106,7 @@ TEST_CASE("film files: every flipped bit and every truncation is found") {
 }
 
 // Heads forged to make the reader fail, with checksums that fit.
-TEST_CASE("film files: a head that makes no sense is refused although its checksum fits") {
+TEST_CASE("film files: a head that makes no sense is refused although its checksum fits", "[film]") {
   const test::TemporaryFolder folder;
   const FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
@@ -145,7 +145,7 @@ TEST_CASE("film files: a head that makes no sense is refused although its checks
 }
 
 // A scene's names can have any length.
-TEST_CASE("film files: what can be written can be read, however long") {
+TEST_CASE("film files: what can be written can be read, however long", "[film]") {
   const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   const std::string path = folder.file("a.film");
@@ -161,7 +161,7 @@ TEST_CASE("film files: what can be written can be read, however long") {
   CHECK(std::get<FilmReadError>(small).problem.find("bytes of memory, and 1048576 are allowed") != std::string::npos);
 }
 
-TEST_CASE("film files: more rows of an identity than are ever written are refused") {
+TEST_CASE("film files: more rows of an identity than are ever written are refused", "[film]") {
   const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   wrote.header.identity.assign(10000, {"", ""});
@@ -171,7 +171,7 @@ TEST_CASE("film files: more rows of an identity than are ever written are refuse
   CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
-TEST_CASE("film files: what a head becomes is counted before it is made") {
+TEST_CASE("film files: what a head becomes is counted before it is made", "[film]") {
   const test::TemporaryFolder folder;
   FilmFile wrote = small_file({});
   for (int i = 0; i < 10000; ++i) wrote.header.attributes[std::to_string(i)] = 0;
@@ -185,7 +185,7 @@ TEST_CASE("film files: what a head becomes is counted before it is made") {
         std::string::npos);
 }
 
-TEST_CASE("film files: sums that take more memory than is allowed are not read") {
+TEST_CASE("film files: sums that take more memory than is allowed are not read", "[film]") {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("a.film");
   const FilmFile wrote = small_file({});
@@ -200,7 +200,7 @@ TEST_CASE("film files: sums that take more memory than is allowed are not read")
 }
 
 // The reader checks the blocks for overlaps without tidying them, which would take quadratic time.
-TEST_CASE("film files: blocks that overlap are refused as fast as they are read") {
+TEST_CASE("film files: blocks that overlap are refused as fast as they are read", "[film]") {
   const test::TemporaryFolder folder;
   FilmHeader header = small_file({}).header;
   header.width = header.height = 300;
@@ -216,7 +216,7 @@ TEST_CASE("film files: blocks that overlap are refused as fast as they are read"
   CHECK(std::get<FilmReadError>(read).problem.find("head makes no sense") != std::string::npos);
 }
 
-TEST_CASE("film files: what is no film, or not there, is said to be so") {
+TEST_CASE("film files: what is no film, or not there, is said to be so", "[film]") {
   const test::TemporaryFolder folder;
   write_bytes(folder.file("a.film"), "{\"version\": 1}                 ");
   const auto other = read_film(folder.file("a.film"));
@@ -231,7 +231,7 @@ TEST_CASE("film files: what is no film, or not there, is said to be so") {
   CHECK(std::get<FilmReadError>(read_film(folder.path().string())).missing);
 }
 
-TEST_CASE("film files: what renders differ in is named") {
+TEST_CASE("film files: what renders differ in is named", "[film]") {
   const Identity a = {{"spp", "64"}, {"seed", "0"}, {"old", "x"}}, b = {{"seed", "0"}, {"spp", "128"}, {"new", "y"}};
   CHECK(differences(a, a).empty());
   CHECK(differences(a, b) == std::vector<std::string>{"spp is 64 there and 128 here",

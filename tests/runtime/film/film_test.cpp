@@ -22,7 +22,7 @@ PathSample sample_of(float value, double depth) {
   return sample;
 }
 
-TEST_CASE("film: means over all samples, depth over those that hit", "[runtime]") {
+TEST_CASE("film: means over all samples, depth over those that hit", "[film]") {
   Film film(2, 1);
   CHECK(film.add(1, 0, sample_of(1, 4)));
   CHECK(film.add(1, 0, sample_of(3, 0)));
@@ -35,7 +35,7 @@ TEST_CASE("film: means over all samples, depth over those that hit", "[runtime]"
   CHECK(film.means(0, 0).samples == 0);
 }
 
-TEST_CASE("film: layers that are not kept are zero and change nothing of the others", "[runtime]") {
+TEST_CASE("film: layers that are not kept are zero and change nothing of the others", "[film]") {
   PathSample sample = sample_of(1, 4);
   sample.evaluations = 30;
   sample.instructions = 600;
@@ -58,7 +58,7 @@ TEST_CASE("film: layers that are not kept are zero and change nothing of the oth
   CHECK(bare.hash() != usual.hash());
 }
 
-TEST_CASE("film: the order of samples leaves no trace", "[runtime]") {
+TEST_CASE("film: the order of samples leaves no trace", "[film]") {
   Film forwards(1, 1), backwards(1, 1);
   for (int i = 0; i < 1000; ++i) {
     forwards.add(0, 0, sample_of(1.0f / static_cast<float>(i + 3), i));
@@ -78,7 +78,7 @@ PathSample numbered(std::uint32_t number) {
   return sample;
 }
 
-TEST_CASE("film: every layer is the same in any order", "[runtime]") {
+TEST_CASE("film: every layer is the same in any order", "[film]") {
   constexpr std::uint32_t kSamples = 200;
   Film forwards(1, 1, kAllLayers), backwards(1, 1, kAllLayers), mixed(1, 1, kAllLayers);
   for (std::uint32_t i = 0; i < kSamples; ++i) {
@@ -96,7 +96,7 @@ TEST_CASE("film: every layer is the same in any order", "[runtime]") {
   CHECK(means.evaluations == (kSamples - 1) / 2.0);
 }
 
-TEST_CASE("film: ids and positions are those of samples that hit, 0 without any", "[runtime]") {
+TEST_CASE("film: ids and positions are those of samples that hit, 0 without any", "[film]") {
   Film film(1, 1, kAllLayers);
   film.add(0, 0, sample_of(1, 0));
   CHECK(film.means(0, 0).surface_id == 0);
@@ -110,7 +110,7 @@ TEST_CASE("film: ids and positions are those of samples that hit, 0 without any"
   CHECK(Film(1, 1).means(0, 0).surface_id == 0);
 }
 
-TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
+TEST_CASE("film: the variance of the mean, dark or bright", "[film]") {
   for (const double scale : {1e-5, 1.0, 1e5}) {
     Film film(1, 1, {.variance = true});
     // The sample variance s^2 of 1, 2, ..., n is n (n + 1) / 12.
@@ -135,7 +135,7 @@ TEST_CASE("film: the variance of the mean, dark or bright", "[runtime]") {
 
 // The layer is the true variance for independent samples. For samples that avoid each other, the layer is an upper
 // bound, because it assumes independence. Regression: the layer's description did not say so.
-TEST_CASE("film: the variance layer against the variance between seeds", "[render][released]") {
+TEST_CASE("film: the variance layer against the variance between seeds", "[film][render][released]") {
   const auto scene =
       scene_of(R"("camera": {"position": [0, 1, 3], "target": [0, 0.3, 0]}, "background": [0.2, 0.3, 0.5],
       "materials": {"lamp": {"type": "emissive", "emission": [8, 8, 8]}},
@@ -172,7 +172,7 @@ TEST_CASE("film: the variance layer against the variance between seeds", "[rende
   }
 }
 
-TEST_CASE("film: squares beyond whole numbers are full, and variance stays finite", "[runtime]") {
+TEST_CASE("film: squares beyond whole numbers are full, and variance stays finite", "[film]") {
   Film film(1, 1, {.variance = true});
   PathSample sample;
   sample.radiance = glm::vec3(3e9f, 1e9f, 0);
@@ -182,7 +182,7 @@ TEST_CASE("film: squares beyond whole numbers are full, and variance stays finit
   CHECK(film.means(0, 0).variance.z == 0);
 }
 
-TEST_CASE("film: a part of a picture takes the picture's pixels", "[runtime]") {
+TEST_CASE("film: a part of a picture takes the picture's pixels", "[film]") {
   Film film(PixelRect{3, 2, 5, 4});
   CHECK(film.width() == 2);
   CHECK(film.height() == 2);
@@ -191,7 +191,7 @@ TEST_CASE("film: a part of a picture takes the picture's pixels", "[runtime]") {
   CHECK(film.means(3, 2).samples == 0);
 }
 
-TEST_CASE("film: a full sum stays full and says so", "[runtime]") {
+TEST_CASE("film: a full sum stays full and says so", "[film]") {
   Film film(1, 1);
   CHECK(film.add(0, 0, sample_of(1e9f, 0)));
   CHECK_FALSE(film.add(0, 0, sample_of(2e9f, 0)));
@@ -216,7 +216,7 @@ FilmLayers every_layer() {
   return layers;
 }
 
-TEST_CASE("film: films of parts add up to the film of the whole, in any order") {
+TEST_CASE("film: films of parts add up to the film of the whole, in any order", "[film]") {
   constexpr std::uint32_t kSamples = 60;
   const PixelRect area{2, 1, 7, 5}, left{2, 1, 4, 5}, right{4, 1, 7, 5};
   Film whole(area, every_layer());
@@ -243,7 +243,7 @@ TEST_CASE("film: films of parts add up to the film of the whole, in any order") 
   CHECK(parts[0].hash() == Film(right, every_layer()).hash());
 }
 
-TEST_CASE("film: merging fills a sum and says so") {
+TEST_CASE("film: merging fills a sum and says so", "[film]") {
   Film sum(1, 1), part(1, 1);
   part.add(0, 0, sample_of(1e9f, 0));
   CHECK(sum.merge(part));
@@ -259,7 +259,7 @@ void merge_count(Film& film, std::size_t stage, std::uint32_t first, int n) {
   film.merge(part, stage);
 }
 
-TEST_CASE("film: no mean uses the samples of the second stage", "[runtime]") {
+TEST_CASE("film: no mean uses the samples of the second stage", "[film]") {
   FilmLayers layers = kAllLayers;
   layers.halves = true;
   Film film(1, 1, layers);
@@ -280,7 +280,7 @@ TEST_CASE("film: no mean uses the samples of the second stage", "[runtime]") {
   CHECK(all.variance.x == Approx((315 - 55.0 * 55 / 13) / 12 / 13));
 }
 
-TEST_CASE("film: the stage of a sample leaves a trace", "[runtime]") {
+TEST_CASE("film: the stage of a sample leaves a trace", "[film]") {
   const auto film_of = [](std::array<std::uint32_t, 4> numbers) {
     Film film(1, 1, kAllLayers);
     film.add_stage();

@@ -43,13 +43,13 @@ double grey_flip(double a, double b) {
   return 0.95 + (error - 0.4 * most) / (0.6 * most) * 0.05;
 }
 
-TEST_CASE("flip: 0 for one picture and the same", "[runtime]") {
+TEST_CASE("flip: 0 for one picture and the same", "[image]") {
   const Flip same = flip_of(draw(checker), draw(checker));
   CHECK(same.mean == 0);
   CHECK(*std::max_element(same.map.begin(), same.map.end()) == 0);
 }
 
-TEST_CASE("flip: plain greys differ as the formulas say", "[runtime]") {
+TEST_CASE("flip: plain greys differ as the formulas say", "[image]") {
   CHECK(flip_of(plain(0, 0, 0), plain(1, 1, 1)).mean == Approx(0.9674).margin(1e-4));
   for (const float grey : {0.001f, 0.02f, 0.3f, 0.55f}) {
     CAPTURE(grey);
@@ -59,7 +59,7 @@ TEST_CASE("flip: plain greys differ as the formulas say", "[runtime]") {
   CHECK(flip_of(plain(0, 1, 0), plain(0, 0, 1)).mean == Approx(1).margin(1e-5));
 }
 
-TEST_CASE("flip: both orders are the same, and what a screen cannot show does not count", "[runtime]") {
+TEST_CASE("flip: both orders are the same, and what a screen cannot show does not count", "[image]") {
   const Pixels a = draw(checker), b = draw([](int x, int, int c) { return static_cast<float>(x + 5 * c) / 50; });
   CHECK(flip_of(a, b).map == flip_of(b, a).map);
   const Pixels bright = draw([](int x, int y, int c) { return x < 20 ? 5 : checker(x, y, c); });
@@ -70,7 +70,7 @@ TEST_CASE("flip: both orders are the same, and what a screen cannot show does no
   CHECK(flip_of(hole, black).mean == 0);
 }
 
-TEST_CASE("flip: more distortion, more difference", "[runtime]") {
+TEST_CASE("flip: more distortion, more difference", "[image]") {
   const Pixels clean = draw(checker);
   double before = 0;
   for (const float strength : {0.01f, 0.03f, 0.1f, 0.19f}) {
@@ -85,7 +85,7 @@ TEST_CASE("flip: more distortion, more difference", "[runtime]") {
   }
 }
 
-TEST_CASE("flip: a difference shows where it is, an edge counts more than a faint change", "[runtime]") {
+TEST_CASE("flip: a difference shows where it is, an edge counts more than a faint change", "[image]") {
   const Pixels grey = plain(0.5f, 0.5f, 0.5f);
   const Pixels dot = draw([](int x, int y, int) { return x == 20 && y == 15 ? 1 : 0.5f; });
   const Flip result = flip_of(dot, grey);

@@ -9,7 +9,7 @@ namespace {
 
 RgbView view(const std::vector<float>& rgb) { return {static_cast<int>(rgb.size() / 3), 1, rgb}; }
 
-TEST_CASE("image diff: a picture does not differ from itself", "[runtime]") {
+TEST_CASE("image diff: a picture does not differ from itself", "[image]") {
   const std::vector<float> picture = {0, 1, 1e6f, -2, 0.25f, 3};
   const Differences same = compare(view(picture), view(picture));
   CHECK(same.mse == 0);
@@ -19,7 +19,7 @@ TEST_CASE("image diff: a picture does not differ from itself", "[runtime]") {
   CHECK(same.invalid == 0);
 }
 
-TEST_CASE("image diff: the measures are those of their formulas", "[runtime]") {
+TEST_CASE("image diff: the measures are those of their formulas", "[image]") {
   const std::vector<float> picture = {1, 2, 3, 0, 0, 0.5f}, reference = {1, 0, 3, 1, 0, 0};
   const Differences differences = compare(view(picture), view(reference));
   CHECK(differences.mse == Approx((4 + 1 + 0.25) / 6));
@@ -31,7 +31,7 @@ TEST_CASE("image diff: the measures are those of their formulas", "[runtime]") {
   CHECK(compare(view(reference), view(picture)).mean == Approx(-differences.mean));
 }
 
-TEST_CASE("image diff: what is not finite is counted and left out", "[runtime]") {
+TEST_CASE("image diff: what is not finite is counted and left out", "[image]") {
   const std::vector<float> picture = {NAN, 5, 5, 1, 1, 1, 2, 2, 2}, reference = {0, 0, 0, INFINITY, 1, 1, 1, 1, 1};
   const Differences differences = compare(view(picture), view(reference));
   CHECK(differences.invalid == 2);

@@ -73,7 +73,7 @@ void write(const std::string& path, Storage storage, Imf::Compression compressio
   }
 }
 
-TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compression", "[runtime]") {
+TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compression", "[image]") {
   const test::TemporaryFolder folder;
   FieldSamples samples = random_samples();
   for (const Storage storage : {Storage::Lines, Storage::Tiles, Storage::Mipmap}) {
@@ -100,7 +100,7 @@ TEST_CASE("image_exr_read: lines and tiles, every type of sample, every compress
   }
 }
 
-TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "[runtime]") {
+TEST_CASE("image_exr_read: DWA is refused, and so is a chunk that ends early", "[image]") {
   const test::TemporaryFolder folder;
   FieldSamples samples = random_samples();
   const auto problem_of = [&](const std::vector<std::uint8_t>& bytes) {

@@ -43,7 +43,7 @@ Film varied_film() {
   return film;
 }
 
-TEST_CASE("image_exr: every channel of a film comes back, at its place in the picture", "[runtime]") {
+TEST_CASE("image_exr: every channel of a film comes back, at its place in the picture", "[image]") {
   const test::TemporaryFolder folder;
   const Film film = varied_film();
   const glm::dvec3 origin{1000, 0, -5};
@@ -78,7 +78,7 @@ TEST_CASE("image_exr: every channel of a film comes back, at its place in the pi
   CHECK(image.channel("none") == nullptr);
 }
 
-TEST_CASE("image_exr: layers that a film does not keep are not there", "[runtime]") {
+TEST_CASE("image_exr: layers that a film does not keep are not there", "[image]") {
   const Film film(2, 2, {.first_hit = false});
   const ImageRows rows = rows_of(film, 2, 2, glm::dvec3(0), {});
   CHECK(rows.find("R") >= 0);
@@ -86,7 +86,7 @@ TEST_CASE("image_exr: layers that a film does not keep are not there", "[runtime
   for (const char* name : {"Z", "N.X", "P.X", "id.object", "variance.R", "evaluations"}) CHECK(rows.find(name) < 0);
 }
 
-TEST_CASE("image_exr: an image read and written again has the same bytes", "[runtime]") {
+TEST_CASE("image_exr: an image read and written again has the same bytes", "[image]") {
   const test::TemporaryFolder folder;
   const Film film = varied_film();
   Attributes attributes = {{"samplesPerPixel", 3}, {"a.float", 0.5f}, {"a.text", std::string("word")}};
@@ -109,7 +109,7 @@ TEST_CASE("image_exr: an image read and written again has the same bytes", "[run
   CHECK(read(folder.file("c.exr")) == read(folder.file("a.exr")));
 }
 
-TEST_CASE("image_exr: what is cut short or no picture is refused with a reason", "[runtime]") {
+TEST_CASE("image_exr: what is cut short or no picture is refused with a reason", "[image]") {
   const test::TemporaryFolder folder;
   const Film film(4, 4);
   REQUIRE(write_exr(rows_of(film, 4, 4, glm::dvec3(0), {}), folder.file("a.exr")) == std::nullopt);
@@ -124,7 +124,7 @@ TEST_CASE("image_exr: what is cut short or no picture is refused with a reason",
   CHECK(std::holds_alternative<std::string>(decode_exr(bytes)));
 }
 
-TEST_CASE("image_exr: a file that cannot be written leaves nothing", "[runtime]") {
+TEST_CASE("image_exr: a file that cannot be written leaves nothing", "[image]") {
   const test::TemporaryFolder folder;
   const Film film(4, 4);
   const ImageRows rows = rows_of(film, 4, 4, glm::dvec3(0), {});

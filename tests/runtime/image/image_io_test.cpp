@@ -21,7 +21,7 @@ std::string read(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
+TEST_CASE("image_io: the ending chooses the format, in any case", "[image]") {
   const auto format = [](const char* path) { return image_format_of(path)->format; };
   CHECK(format("a.png") == ImageFormat::Png);
   CHECK(format("dir.x/a.PNG") == ImageFormat::Png);
@@ -34,7 +34,7 @@ TEST_CASE("image_io: the ending chooses the format, in any case", "[runtime]") {
   for (const char* bad : {"a", "a.", "png", "a.gif", "a.png/b", "a.pngx"}) CHECK_FALSE(image_format_of(bad));
 }
 
-TEST_CASE("image_io: each file has its format's header, and the size", "[runtime]") {
+TEST_CASE("image_io: each file has its format's header, and the size", "[image]") {
   const test::TemporaryFolder folder;
   const ByteImage picture = gradient(7, 5);
   CHECK(write_image(picture, folder.file("a.png")) == std::nullopt);
@@ -51,7 +51,7 @@ TEST_CASE("image_io: each file has its format's header, and the size", "[runtime
   CHECK(bmp[18] == 7);
 }
 
-TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtime]") {
+TEST_CASE("image_io: a failure leaves what was there and nothing else", "[image]") {
   const test::TemporaryFolder folder;
   CHECK(write_image(gradient(2, 2), folder.file("none/a.png")).has_value());
   CHECK(write_image(gradient(2, 2), folder.file("a.gif")).has_value());
@@ -60,7 +60,7 @@ TEST_CASE("image_io: a failure leaves what was there and nothing else", "[runtim
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
+TEST_CASE("image_io: an existing file is replaced", "[image]") {
   const test::TemporaryFolder folder;
   REQUIRE(write_image(gradient(2, 2), folder.file("a.bmp")) == std::nullopt);
   REQUIRE(write_image(gradient(4, 4), folder.file("a.bmp")) == std::nullopt);
@@ -68,7 +68,7 @@ TEST_CASE("image_io: an existing file is replaced", "[runtime]") {
   CHECK(read(folder.file("a.bmp"))[18] == 4);
 }
 
-TEST_CASE("image_io: a float map holds the values, the lowest row first", "[runtime]") {
+TEST_CASE("image_io: a float map holds the values, the lowest row first", "[image]") {
   const test::TemporaryFolder folder;
   const std::vector<float> values = {1, -2.5f, 0, 1e-3f, 1e9f, std::numeric_limits<float>::infinity()};
   REQUIRE(write_float_map(values, 3, 2, folder.file("a.PFM")) == std::nullopt);
@@ -88,7 +88,7 @@ TEST_CASE("image_io: a float map holds the values, the lowest row first", "[runt
   CHECK(folder.files() == 1);
 }
 
-TEST_CASE("image_io: a path is refused before rendering, with the reason", "[runtime]") {
+TEST_CASE("image_io: a path is refused before rendering, with the reason", "[image]") {
   for (const char* ending : {".png", ".jpg", ".jpeg", ".bmp", ".exr", ".pfm", ".hdr"}) {
     CHECK(check_image_path("a.tga")->find(ending) != std::string::npos);
   }

@@ -56,7 +56,7 @@ std::string problem_of(const Bytes& bytes, double memory = kMemory) {
   return std::holds_alternative<std::string>(read) ? std::get<std::string>(read) : "";
 }
 
-TEST_CASE("image_jpeg: baseline and progressive, grey and coloured", "[runtime]") {
+TEST_CASE("image_jpeg: baseline and progressive, grey and coloured", "[image]") {
   for (const Kind kind : {Baseline, Progressive}) {
     for (const int components : {1, 3}) {
       CAPTURE(kind, components);
@@ -78,7 +78,7 @@ TEST_CASE("image_jpeg: baseline and progressive, grey and coloured", "[runtime]"
 
 // Regression: stb_image made up the missing data of a truncated file, and reported nothing when an end marker
 // followed.
-TEST_CASE("image_jpeg: a file that is cut off is refused wherever that is", "[runtime]") {
+TEST_CASE("image_jpeg: a file that is cut off is refused wherever that is", "[image]") {
   for (const Kind kind : {Baseline, Progressive}) {
     const Bytes whole = encoded(3, JCS_RGB, kind);
     REQUIRE(problem_of(whole).empty());
@@ -96,12 +96,12 @@ TEST_CASE("image_jpeg: a file that is cut off is refused wherever that is", "[ru
   }
 }
 
-TEST_CASE("image_jpeg: what is not read is refused by name", "[runtime]") {
+TEST_CASE("image_jpeg: what is not read is refused by name", "[image]") {
   CHECK(problem_of(encoded(4, JCS_CMYK, Baseline)).find("CMYK") != std::string::npos);
   CHECK(problem_of(encoded(3, JCS_RGB, Arithmetic)).find("arithmetic") != std::string::npos);
 }
 
-TEST_CASE("image_jpeg: memory is counted before it is taken", "[runtime]") {
+TEST_CASE("image_jpeg: memory is counted before it is taken", "[image]") {
   const double pixels = kSide * kSide;
   const Bytes grey = encoded(1, JCS_GRAYSCALE, Baseline), progressive = encoded(1, JCS_GRAYSCALE, Progressive);
   const double needed = static_cast<double>(grey.size()) + pixels * (1 + 12);

@@ -53,7 +53,7 @@ double error_of(const test::TemporaryFolder& folder, const std::string& name, La
   return worst;
 }
 
-TEST_CASE("image_read: what is written comes back as exactly as its format says", "[runtime]") {
+TEST_CASE("image_read: what is written comes back as exactly as its format says", "[image]") {
   const test::TemporaryFolder folder;
   // Half a step of 8 or 16 bits, times the steepest slope of the sRGB decoding, 2.3 at white.
   CHECK(error_of(folder, "a.png", Layer::Beauty) <= 2.3 / 255 / 2);
@@ -67,7 +67,7 @@ TEST_CASE("image_read: what is written comes back as exactly as its format says"
   CHECK(error_of(folder, "b.png", Layer::Beauty, 16) > 0);
 }
 
-TEST_CASE("image_read: 8 bits are the nearest bytes", "[runtime]") {
+TEST_CASE("image_read: 8 bits are the nearest bytes", "[image]") {
   const test::TemporaryFolder folder;
   ByteImage picture{256, 1, {}};
   for (int i = 0; i < 256; ++i) picture.rgb.insert(picture.rgb.end(), 3, static_cast<std::uint8_t>(i));
@@ -96,7 +96,7 @@ FloatImage image_of(const test::TemporaryFolder& folder, std::string_view name, 
   return std::get<FloatImage>(read);
 }
 
-TEST_CASE("image_read: every kind of png", "[runtime]") {
+TEST_CASE("image_read: every kind of png", "[image]") {
   const test::TemporaryFolder folder;
   using Values = std::vector<std::vector<float>>;
   CHECK(image_of(
@@ -128,7 +128,7 @@ TEST_CASE("image_read: every kind of png", "[runtime]") {
 }
 
 // libpng accepts the first three as whole images and leaves the pixels without data black.
-TEST_CASE("image_read: a png whose data ends before its picture is refused", "[runtime]") {
+TEST_CASE("image_read: a png whose data ends before its picture is refused", "[image]") {
   const test::TemporaryFolder folder;
   const auto problem_of = [&](std::string_view digits) {
     std::ofstream(folder.file("a.png"), std::ios::binary) << bytes_of(digits);
@@ -160,7 +160,7 @@ TEST_CASE("image_read: a png whose data ends before its picture is refused", "[r
 }
 
 // R, G and B are each a copy of grey.
-TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[runtime]") {
+TEST_CASE("image_read: the memory of a grey picture is counted before it is taken", "[image]") {
   const test::TemporaryFolder folder;
   const std::string png = bytes_of(
       "89504e470d0a1a0a0000000d4948445200000003000000010100000000339b29190000000a4944415478da6358000000a200a1"
@@ -176,7 +176,7 @@ TEST_CASE("image_read: the memory of a grey picture is counted before it is take
   }
 }
 
-TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
+TEST_CASE("image_read: a float map of either byte order", "[image]") {
   const test::TemporaryFolder folder;
   std::ofstream(folder.file("a.pfm"), std::ios::binary)
       << "PF\n1 2\n1.0\n"
@@ -187,7 +187,7 @@ TEST_CASE("image_read: a float map of either byte order", "[runtime]") {
   CHECK(image.values[2] == std::vector<float>{0, 3});
 }
 
-TEST_CASE("image_read: what cannot be read is refused with its name and a reason", "[runtime]") {
+TEST_CASE("image_read: what cannot be read is refused with its name and a reason", "[image]") {
   const test::TemporaryFolder folder;
   const auto problem = [&](const std::string& name, const std::string& text) {
     std::ofstream(folder.file(name), std::ios::binary) << text;

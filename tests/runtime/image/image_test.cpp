@@ -26,7 +26,7 @@ Film three_pixels() {
   return film;
 }
 
-TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[runtime]") {
+TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[image]") {
   const Film film = three_pixels();
   CHECK(layer_image(film, Layer::Beauty).rgb[0] == 137);       // 0.25
   CHECK(layer_image(film, Layer::Beauty, {1}).rgb[0] == 188);  // 0.5
@@ -35,7 +35,7 @@ TEST_CASE("image: beauty is exposed, sRGB encoded and clamped", "[runtime]") {
   CHECK(layer_image(film, Layer::Beauty, {10}).rgb[6] == 0);
 }
 
-TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[runtime]") {
+TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[image]") {
   constexpr int kSide = 512;
   Film film(kSide, kSide);
   PathSample sample;
@@ -53,7 +53,7 @@ TEST_CASE("image: every brightness is the nearest byte of its sRGB signal", "[ru
   CHECK(wrong == 0);
 }
 
-TEST_CASE("image: what lies first along the ray", "[runtime]") {
+TEST_CASE("image: what lies first along the ray", "[image]") {
   const Film film = three_pixels();
   const ByteImage albedo = layer_image(film, Layer::Albedo), normal = layer_image(film, Layer::Normal),
                   depth = layer_image(film, Layer::Depth);
@@ -62,7 +62,7 @@ TEST_CASE("image: what lies first along the ray", "[runtime]") {
   CHECK(depth.rgb == std::vector<std::uint8_t>{255, 255, 255, 128, 128, 128, 0, 0, 0});
 }
 
-TEST_CASE("image: 16 bits are the nearest word, and 8 bits the same picture", "[runtime]") {
+TEST_CASE("image: 16 bits are the nearest word, and 8 bits the same picture", "[image]") {
   constexpr int kWidth = 4096;
   Film film(kWidth, 1);
   PathSample sample;
@@ -86,7 +86,7 @@ TEST_CASE("image: 16 bits are the nearest word, and 8 bits the same picture", "[
   CHECK(apart == 0);
 }
 
-TEST_CASE("image: a part of a picture is shown as that part", "[runtime]") {
+TEST_CASE("image: a part of a picture is shown as that part", "[image]") {
   Film whole(8, 6), part(PixelRect{2, 1, 7, 5});
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 8; ++x) {

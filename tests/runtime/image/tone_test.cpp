@@ -13,7 +13,7 @@ constexpr ToneCurve kCurves[] = {ToneCurve::None, ToneCurve::Filmic, ToneCurve::
 
 double grey(ToneCurve curve, double light) { return apply_curve(curve, glm::dvec3(light)).y; }
 
-TEST_CASE("tone: black stays black, brighter is never darker, and all ends at white", "[runtime]") {
+TEST_CASE("tone: black stays black, brighter is never darker, and all ends at white", "[image]") {
   for (const ToneCurve curve : kCurves) {
     INFO(compiler::kToneCurves[static_cast<std::size_t>(curve)]);
     CHECK(apply_curve(curve, glm::dvec3(0)) == glm::dvec3(0));
@@ -35,11 +35,11 @@ TEST_CASE("tone: black stays black, brighter is never darker, and all ends at wh
   }
 }
 
-TEST_CASE("tone: none is the light itself, cut off at 1", "[runtime]") {
+TEST_CASE("tone: none is the light itself, cut off at 1", "[image]") {
   CHECK(apply_curve(ToneCurve::None, {0.25, 1.5, 0}) == glm::dvec3(0.25, 1, 0));
 }
 
-TEST_CASE("tone: filmic has Hable's values and his white", "[runtime]") {
+TEST_CASE("tone: filmic has Hable's values and his white", "[image]") {
   const auto hable = [](double x) {
     return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.30;
   };
@@ -50,7 +50,7 @@ TEST_CASE("tone: filmic has Hable's values and his white", "[runtime]") {
   CHECK(grey(ToneCurve::Filmic, 5.5) < 1);
 }
 
-TEST_CASE("tone: aces has the fit's values, and strong colours fade to white", "[runtime]") {
+TEST_CASE("tone: aces has the fit's values, and strong colours fade to white", "[image]") {
   // For grey, both matrices only scale by the sums of their rows: 1 within 3e-5.
   const auto fit = [](double v) {
     return (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
@@ -63,7 +63,7 @@ TEST_CASE("tone: aces has the fit's values, and strong colours fade to white", "
   CHECK(lamp.y > 0.2);
 }
 
-TEST_CASE("tone: agx leaves middle grey in the middle, ends at its stops, and turns lamps white", "[runtime]") {
+TEST_CASE("tone: agx leaves middle grey in the middle, ends at its stops, and turns lamps white", "[image]") {
   // Sobotka's sigmoid maps 0.18 to the signal 0.18^(1/2.4), for a display of gamma 2.2. The polynomial fits the
   // sigmoid within 2 %.
   CHECK(std::pow(grey(ToneCurve::Agx, 0.18), 1 / 2.2) == Approx(std::pow(0.18, 1 / 2.4)).epsilon(0.02));
@@ -74,7 +74,7 @@ TEST_CASE("tone: agx leaves middle grey in the middle, ends at its stops, and tu
   CHECK(lamp.z > lamp.x);
 }
 
-TEST_CASE("tone: neutral keeps colours below its shoulder but for a reflection of 0.04", "[runtime]") {
+TEST_CASE("tone: neutral keeps colours below its shoulder but for a reflection of 0.04", "[image]") {
   const glm::dvec3 color{0.6, 0.3, 0.2}, kept = apply_curve(ToneCurve::Neutral, color);
   for (int i = 0; i < 3; ++i) CHECK(kept[i] == Approx(color[i] - 0.04).epsilon(1e-12));
   // Below 0.08 the reflection falls with the square: the smallest channel becomes 6.25 x^2.
@@ -87,7 +87,7 @@ TEST_CASE("tone: neutral keeps colours below its shoulder but for a reflection o
   CHECK(lamp.y > 0.5);
 }
 
-TEST_CASE("tone: a stop is a factor of two", "[runtime]") {
+TEST_CASE("tone: a stop is a factor of two", "[image]") {
   CHECK(exposure_factor(0) == 1);
   CHECK(exposure_factor(3) == 8);
   CHECK(exposure_factor(-2) == 0.25);

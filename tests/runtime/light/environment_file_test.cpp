@@ -21,7 +21,7 @@ std::string reason(const std::string& path) {
 
 void write(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
-TEST_CASE("environment file: a Radiance picture", "[lights]") {
+TEST_CASE("environment file: a Radiance picture", "[light]") {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("sky.HDR");
   // Two pixels without run-length encoding: (1, 0.5, 0.25) and (16, 0, 32), as mantissas / 256 times 2^(e - 128).
@@ -36,7 +36,7 @@ TEST_CASE("environment file: a Radiance picture", "[lights]") {
   CHECK(image.pixels[1] == glm::vec3(16, 0, 32));
 }
 
-TEST_CASE("environment file: an OpenEXR picture, and what is no radiance in it", "[lights]") {
+TEST_CASE("environment file: an OpenEXR picture, and what is no radiance in it", "[light]") {
   const test::TemporaryFolder folder;
   const std::string path = folder.file("sky.exr");
   FloatImage written;
@@ -55,7 +55,7 @@ TEST_CASE("environment file: an OpenEXR picture, and what is no radiance in it",
   CHECK(image.pixels[5] == glm::vec3(3));
 }
 
-TEST_CASE("environment file: bad files say why", "[lights]") {
+TEST_CASE("environment file: bad files say why", "[light]") {
   const test::TemporaryFolder folder;
   write(folder.file("a.hdr"), "no picture");
   write(folder.file("b.exr"), "no picture");

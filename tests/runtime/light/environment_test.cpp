@@ -79,7 +79,7 @@ Mean irradiance(const Environment& environment, const LightSampleContext& query,
   return {sum / n, std::sqrt((squares / n - sum / n * (sum / n)) / n)};
 }
 
-TEST_CASE("environment: directions fall as their density says", "[lights]") {
+TEST_CASE("environment: directions fall as their density says", "[light]") {
   const Environment sky(scene_with(kSky), nullptr);
   const Environment picture(scene_with(kPicture), random_image(12, 6));
   for (const LightSampleContext& query : {kUp, kAside, kBoth}) {
@@ -88,7 +88,7 @@ TEST_CASE("environment: directions fall as their density says", "[lights]") {
   }
 }
 
-TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
+TEST_CASE("environment: irradiance of gradients and pictures", "[light]") {
   const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
   CHECK(!gradient.emits());  // a gradient has no sampler: only hits find its light
   CHECK(gradient.importance(kUp) == 0);
@@ -99,7 +99,7 @@ TEST_CASE("environment: irradiance of gradients and pictures", "[lights]") {
 }
 
 TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and it turns counter-clockwise",
-          "[lights]") {
+          "[light]") {
   EnvironmentImage image{4, 2, std::vector<glm::vec3>(8, glm::vec3(0))};
   for (std::size_t i = 0; i < 8; ++i) image.pixels[i] = glm::vec3(static_cast<float>(i));
   const auto shared = std::make_shared<EnvironmentImage>(image);
@@ -119,7 +119,7 @@ TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and i
   CHECK(looking("90", {-s, 1, -s}) == Approx(2));  // the front right of the map has moved to the left
 }
 
-TEST_CASE("environment: discs give the irradiance asked for, and rays see them", "[lights]") {
+TEST_CASE("environment: discs give the irradiance asked for, and rays see them", "[light]") {
   const Environment lit(scene_with(R"("lights": {"far": {"type": "directional", "direction": [0, -1, 0],
       "irradiance": [2, 2, 2], "angle": 5}})"),
                         nullptr);
@@ -140,7 +140,7 @@ std::string disc_of(double degrees) {
          std::to_string(degrees) + "}}";
 }
 
-TEST_CASE("environment: a disc however small gives the irradiance asked for", "[lights]") {
+TEST_CASE("environment: a disc however small gives the irradiance asked for", "[light]") {
   for (const double degrees : {20.0, 0.265, 1e-2, 1e-4, 1e-6}) {
     CAPTURE(degrees);
     const Environment lit(scene_with(disc_of(degrees)), nullptr);
@@ -150,7 +150,7 @@ TEST_CASE("environment: a disc however small gives the irradiance asked for", "[
 }
 
 // Regression: for rays, a disc of 1e-4 degrees was 7 % larger than its radiance assumed.
-TEST_CASE("environment: rays that hit a small disc find its irradiance", "[lights]") {
+TEST_CASE("environment: rays that hit a small disc find its irradiance", "[light]") {
   const Environment lit(scene_with(disc_of(1e-4)), nullptr);
   const glm::vec3 middle = glm::normalize(glm::vec3(1, 2, 1));
   const glm::vec3 aside = glm::normalize(glm::cross(middle, glm::vec3(1, 0, 0)));
@@ -162,7 +162,7 @@ TEST_CASE("environment: rays that hit a small disc find its irradiance", "[light
   CHECK(M_PI * least * least * lit.radiance(middle).x == Approx(2).epsilon(1e-3));
 }
 
-TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[lights]") {
+TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[light]") {
   const Environment lit(scene_with(disc_of(10)), nullptr);
   test::ChiSquareSetup setup;
   setup.samples = test::scaled_cases(100000);
@@ -183,7 +183,7 @@ TEST_CASE("environment: directions to a disc pass a chi-square test against thei
   }
 }
 
-TEST_CASE("environment: a sky with its sun is sampled without bias", "[lights]") {
+TEST_CASE("environment: a sky with its sun is sampled without bias", "[light]") {
   const compiler::CompiledScene scene =
       scene_with(R"("background": {"type": "sky", "elevation": 40, "turbidity": 3})");
   const Environment environment(scene, nullptr);
@@ -203,7 +203,7 @@ TEST_CASE("environment: a sky with its sun is sampled without bias", "[lights]")
   CHECK(e.error < 0.01 * level);
 }
 
-TEST_CASE("environment: the radiance of many rays is that of each", "[lights]") {
+TEST_CASE("environment: the radiance of many rays is that of each", "[light]") {
   const std::string sun = R"("lights": {"sun": {"type": "directional", "direction": [0, -1, 0.5], "angle": 5}})";
   const std::string gradient = R"("background": {"bottom": [0.1, 0.3, 0.7], "top": [1.5, 0.9, 0.2]})";
   for (const std::string& settings : {gradient, gradient + "," + sun, std::string(kSky)}) {
@@ -225,7 +225,7 @@ TEST_CASE("environment: the radiance of many rays is that of each", "[lights]") 
   }
 }
 
-TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[lights]") {
+TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[light]") {
   const Environment dark(scene_with(R"("film": {})"), nullptr);
   CHECK_FALSE(dark.emits());
   CHECK(dark.importance(kUp) == 0);

@@ -36,7 +36,7 @@ std::optional<dvec3> meet(const AreaLightShape& shape, dvec3 from, dvec3 w) {
   return std::nullopt;
 }
 
-TEST_CASE("light shapes: points fall as their density says", "[lights]") {
+TEST_CASE("light shapes: points fall as their density says", "[light]") {
   const int n = test::scaled_cases(40000);
   for (const test::NamedAreaLight& c : test::kAreaLights) {
     const AreaLightShape shape(c.area_light);
@@ -50,7 +50,7 @@ TEST_CASE("light shapes: points fall as their density says", "[lights]") {
   }
 }
 
-TEST_CASE("light shapes: a sample's density is the density of hitting it, and it is seen", "[lights]") {
+TEST_CASE("light shapes: a sample's density is the density of hitting it, and it is seen", "[light]") {
   for (const test::NamedAreaLight& c : test::kAreaLights) {
     const AreaLightShape shape(c.area_light);
     for (const dvec3 from : test::kShadingPoints) {
@@ -78,7 +78,7 @@ TEST_CASE("light shapes: a sample's density is the density of hitting it, and it
   }
 }
 
-TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[lights]") {
+TEST_CASE("light shapes: no sample from within, beside a sheet, or behind", "[light]") {
   for (const test::NamedAreaLight& c : test::kAreaLights) {
     const AreaLightShape shape(c.area_light);
     CAPTURE(c.name);
@@ -112,7 +112,7 @@ Mean irradiance(const AreaLightShape& shape, dvec3 place, dvec3 normal, int n) {
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n) + 1e-6 * mean};
 }
 
-TEST_CASE("light shapes: P3, a ball gives pi L R^2/d^2 cos", "[lights]") {
+TEST_CASE("light shapes: P3, a ball gives pi L R^2/d^2 cos", "[light]") {
   const AreaLightShape shape(ball(0.5));
   for (const double d : {1.5, 3.0, 40.0}) {
     const dvec3 w = glm::normalize(dvec3(0.2, 1, -0.4)), place = shape.centre() - d * w;
@@ -125,7 +125,7 @@ TEST_CASE("light shapes: P3, a ball gives pi L R^2/d^2 cos", "[lights]") {
   }
 }
 
-TEST_CASE("light shapes: P4, a coaxial disc gives pi L R^2/(R^2 + h^2)", "[lights]") {
+TEST_CASE("light shapes: P4, a coaxial disc gives pi L R^2/(R^2 + h^2)", "[light]") {
   const AreaLightShape shape(round(AreaLight::Shape::Cylinder, 0.8, 1e-9));
   const dvec3 axis = shape.area_light().rotation[1];
   for (const double h : {0.5, 2.0}) {
@@ -137,7 +137,7 @@ TEST_CASE("light shapes: P4, a coaxial disc gives pi L R^2/(R^2 + h^2)", "[light
   }
 }
 
-TEST_CASE("light shapes: P5, polygons give Lambert's sum over edges", "[lights]") {
+TEST_CASE("light shapes: P5, polygons give Lambert's sum over edges", "[light]") {
   for (const double skew : {0.0, 0.7}) {
     const AreaLightShape shape(quad(1e-9, skew));
     const AreaLight& area_light = shape.area_light();

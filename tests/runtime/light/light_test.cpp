@@ -61,7 +61,7 @@ Mean irradiance(const Lights& lights, const LightSampleContext& query, int n) {
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n) + 1e-6 * mean};
 }
 
-TEST_CASE("lights: a sample's density is that of the hit or of the background", "[lights]") {
+TEST_CASE("lights: a sample's density is that of the hit or of the background", "[light]") {
   const compiler::CompiledScene scene =
       scene_with(R"(, "background": {"type": "sky", "elevation": 40, "strength": 0.3},
                     "lights": {"sun": {"type": "directional", "direction": [1, -2, 0], "angle": 2}})",
@@ -100,7 +100,7 @@ TEST_CASE("lights: a sample's density is that of the hit or of the background", 
   }
 }
 
-TEST_CASE("lights: P3, the irradiance of a ball", "[lights]") {
+TEST_CASE("lights: P3, the irradiance of a ball", "[light]") {
   const compiler::CompiledScene scene =
       scene_with("", R"({"type": "sphere", "radius": 0.5, "translate": [0, 3, 1], "material": "glow"},)" + kFloor);
   const Lights lights(scene);
@@ -111,7 +111,7 @@ TEST_CASE("lights: P3, the irradiance of a ball", "[lights]") {
   CHECK(e.error < 1e-3 * truth);
 }
 
-TEST_CASE("lights: many lamps give the sum of each", "[lights]") {
+TEST_CASE("lights: many lamps give the sum of each", "[light]") {
   std::string balls;
   for (int i = 0; i < 100; ++i) {
     balls += fmt::format(R"({{"type": "sphere", "radius": 0.1, "translate": [{}, {}, {}], "material": "glow"}},)",
@@ -133,7 +133,7 @@ TEST_CASE("lights: many lamps give the sum of each", "[lights]") {
   }
 }
 
-TEST_CASE("lights: point, spot and directional lights are exact", "[lights]") {
+TEST_CASE("lights: point, spot and directional lights are exact", "[light]") {
   const LightSampleContext below{{0, 0, 0}, {0, 1, 0}};
   const auto only = [&](const std::string& light, const LightSampleContext& query) {
     const compiler::CompiledScene scene = scene_with(R"(, "lights": {"it": )" + light + "}", kFloor);
@@ -162,7 +162,7 @@ TEST_CASE("lights: point, spot and directional lights are exact", "[lights]") {
   CHECK(glm::length(sun.wi - glm::normalize(glm::vec3(0, 1, 1))) < 1e-6f);
 }
 
-TEST_CASE("lights: lights of all kinds together give the sum of each", "[lights]") {
+TEST_CASE("lights: lights of all kinds together give the sum of each", "[light]") {
   const compiler::CompiledScene scene =
       scene_with(R"(, "lights": {
       "a": {"type": "point", "position": [1, 4, 0], "intensity": [5, 5, 5]},
@@ -177,7 +177,7 @@ TEST_CASE("lights: lights of all kinds together give the sum of each", "[lights]
   CHECK(std::abs(e.value - truth) < 4 * e.error);
 }
 
-TEST_CASE("lights: what cannot be sampled has no density", "[lights]") {
+TEST_CASE("lights: what cannot be sampled has no density", "[light]") {
   // One object with one surface: a whole ball, and a ball that is cut.
   const compiler::CompiledScene scene =
       scene_with("", R"({"name": "lamps", "type": "union", "material": "glow", "of": [
@@ -196,7 +196,7 @@ TEST_CASE("lights: what cannot be sampled has no density", "[lights]") {
   CHECK(lights.pdf_of_hit({{0, 0, 0}, {0, 1, 0}}, scene.area_lights[0].surface, {0, -1, 0}) == 0);
 }
 
-TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
+TEST_CASE("lights: faces that coincide are lit once", "[light]") {
   // Two boxes make a cross. The middle of the cross's lower face belongs to both.
   const compiler::CompiledScene scene = scene_with("", R"(
       {"type": "box", "half_size": [2, 0.1, 0.5], "translate": [0, 3, 0], "material": "glow"},
@@ -224,7 +224,7 @@ TEST_CASE("lights: faces that coincide are lit once", "[lights]") {
   CHECK(e.error < 0.02 * truth);
 }
 
-TEST_CASE("lights: a scene without any is empty", "[lights]") {
+TEST_CASE("lights: a scene without any is empty", "[light]") {
   CHECK(Lights(scene_with("", kFloor)).empty());
   CHECK(Lights(scene_with("", kFloor)).sample(kQueries[0], 0.5f, {0.5f, 0.5f}).pdf == 0);
   CHECK(Lights(scene_with(R"(, "background": [1, 1, 1])", kFloor)).empty());  // only hits find a uniform background

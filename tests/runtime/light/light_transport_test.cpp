@@ -39,7 +39,7 @@ void expect(const LightScene& scene, RenderOptions options, double error) {
   CHECK(result.stats.march.invalid + result.stats.dropped_samples == 0);
 }
 
-TEST_CASE("light: closed rooms, however paths end", "[render][light][released]") {
+TEST_CASE("light: closed rooms, however paths end", "[light][render][released]") {
   for (const double albedo : {0.5, 0.8, 0.9}) {
     for (const int bounces : {0, 2, 5}) {
       RenderOptions options = square(24, test::scaled_cases(64));
@@ -51,7 +51,7 @@ TEST_CASE("light: closed rooms, however paths end", "[render][light][released]")
          2e-2);
 }
 
-TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][light]") {
+TEST_CASE("light: what absorbs nothing vanishes in an even light", "[light][render]") {
   for (const char* material : {R"({"type": "diffuse", "color": [1, 1, 1]})", R"({"type": "specular"})",
                                R"({"type": "transparent"})", R"({"type": "transparent", "ior": 2.4})",
                                // Regression: paths that entered through a hole and left by refraction brought 3.5 %
@@ -65,7 +65,7 @@ TEST_CASE("light: what absorbs nothing vanishes in an even light", "[render][lig
   }
 }
 
-TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render][light]") {
+TEST_CASE("light: irradiance under lamps of every shape, in every way", "[light][render]") {
   const LightScene scenes[] = {test::under_ball(0.5, 0, 2), test::under_ball(0.3, 1, 0.8), test::under_disc(0.5, 1),
                                test::under_rectangle(0.4, 0.3, 0, 1), test::under_rectangle(0.5, 0.2, 0.3, 0.6)};
   for (const LightScene& scene : scenes) {
@@ -80,7 +80,7 @@ TEST_CASE("light: irradiance under lamps of every shape, in every way", "[render
 
 // Regression: any object in front of a light blocked shadow rays. A ball light was noisier, and a point light was
 // lost.
-TEST_CASE("light: holes and panes let light through to where it is looked for", "[render][light]") {
+TEST_CASE("light: holes and panes let light through to where it is looked for", "[light][render]") {
   for (const test::Veil& veil : {test::kGauze, test::kPane}) {
     INFO(veil.material);
     RenderOptions options = square(16, test::scaled_cases(64));
@@ -97,7 +97,7 @@ TEST_CASE("light: holes and panes let light through to where it is looked for", 
 
 // Regression: after each crossing, a shadow ray ended nearer to the area light than it should, and two walls hid the
 // light.
-TEST_CASE("light: many veils", "[render][light]") {
+TEST_CASE("light: many veils", "[light][render]") {
   for (const LightSampling way : {LightSampling::Mis, LightSampling::Nee}) {
     RenderOptions options = square(32, test::scaled_cases(64));
     options.light_sampling = way;
@@ -107,7 +107,7 @@ TEST_CASE("light: many veils", "[render][light]") {
 
 // Regression: a liquid between two veils absorbed nothing, because a shadow ray used only the absorption at its
 // start.
-TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
+TEST_CASE("light: a drink between veils takes its part", "[light][render]") {
   RenderOptions options = square(16, test::scaled_cases(64));
   options.max_depth = 1;
   expect(test::veiled_drink(), options, 1e-3);
@@ -115,7 +115,7 @@ TEST_CASE("light: a drink between veils takes its part", "[render][light]") {
 
 // Regression: shadow rays found light on a clear area light's surface although water filled the area light, and light
 // through an unbounded sea.
-TEST_CASE("light: no more is found in water than gets there", "[render][light]") {
+TEST_CASE("light: no more is found in water than gets there", "[light][render]") {
   for (const LightScene& scene : {test::submerged_area_light(), test::bottomless_sea()}) {
     for (const LightSampling way : kEveryWay) {
       INFO("way " << static_cast<int>(way));
@@ -127,7 +127,7 @@ TEST_CASE("light: no more is found in water than gets there", "[render][light]")
 }
 
 // Regression: a sheet of opacity 0.25 emitted as much as a sheet without holes: 5.8 instead of 1.875.
-TEST_CASE("light: of a surface with holes only what is there emits", "[render][light]") {
+TEST_CASE("light: of a surface with holes only what is there emits", "[light][render]") {
   for (const double opacity : {0.25, 0.0}) {
     expect(test::glowing_gauze(opacity), square(16, test::scaled_cases(256)), 1e-2);
     for (const LightSampling way : kEveryWay) {
@@ -140,7 +140,7 @@ TEST_CASE("light: of a surface with holes only what is there emits", "[render][l
 }
 
 // Regression: a coat's colour tinted the reflected light, but not the emitted light.
-TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
+TEST_CASE("light: a coat tints what is emitted below it", "[light][render]") {
   for (const LightSampling way : kEveryWay) {
     INFO("way " << static_cast<int>(way));
     RenderOptions options = square(32, test::scaled_cases(way == LightSampling::Bsdf ? 256 : 64));
@@ -151,13 +151,13 @@ TEST_CASE("light: a coat tints what is emitted below it", "[render][light]") {
 
 // Regression: Russian roulette ended paths caught in the glass regardless of their throughput. The few survivors
 // weighed so much that most renders were 1 % too dark.
-TEST_CASE("light: paths that lose nothing are not ended by chance", "[render][light][released]") {
+TEST_CASE("light: paths that lose nothing are not ended by chance", "[light][render][released]") {
   const auto scene =
       scene_of(test::furnace(R"({"type": "principled", "transmission": 1, "roughness": 0.15, "ior": 2.4})"));
   CHECK(test::returned(scene, 16, 256) == Approx(1).margin(4e-3));
 }
 
-TEST_CASE("light: random white materials return what they get", "[render][light]") {
+TEST_CASE("light: random white materials return what they get", "[light][render]") {
   const int count = test::scaled_cases(16);
   double sum = 0;
   for (int i = 0; i < count; ++i) {
@@ -173,7 +173,7 @@ TEST_CASE("light: random white materials return what they get", "[render][light]
 }
 
 // Straight transmission is not scattering: a path of any bounce limit sees the light behind a hole.
-TEST_CASE("light: pass-through does not count as a bounce", "[render][light]") {
+TEST_CASE("light: pass-through does not count as a bounce", "[light][render]") {
   LightScene scene =
       test::in_even_light(R"({"type": "principled", "color": [0, 0, 0], "specular_weight": 0, "opacity": 0.4})",
                           R"("type": "box", "half_size": [3, 3, 0.1])");
@@ -184,21 +184,21 @@ TEST_CASE("light: pass-through does not count as a bounce", "[render][light]") {
 }
 
 // Regression: a material without an interior had the refractive index of its surroundings and reflected nothing.
-TEST_CASE("light: what is partly clear reflects, too", "[render][light]") {
+TEST_CASE("light: what is partly clear reflects, too", "[light][render]") {
   LightScene scene = test::smooth_gauze();
   RenderOptions options = square(16, test::scaled_cases(256));
   expect(scene, options, 1e-1);
 }
 
-TEST_CASE("light: a cavity gathers light by many bounces", "[render][light][released]") {
+TEST_CASE("light: a cavity gathers light by many bounces", "[light][render][released]") {
   for (const double albedo : {0.5, 0.9}) expect(test::cavity(albedo, 40), square(24, test::scaled_cases(128)), 3e-2);
 }
 
-TEST_CASE("light: a slab of glass passes 1 - R over 1 + R", "[render][light]") {
+TEST_CASE("light: a slab of glass passes 1 - R over 1 + R", "[light][render]") {
   expect(test::slab(), square(24, test::scaled_cases(64)), 1e-2);
 }
 
-TEST_CASE("light: Lambert's ball at every phase", "[render][light][released]") {
+TEST_CASE("light: Lambert's ball at every phase", "[light][render][released]") {
   for (const double degrees : {0.0, 60.0, 120.0}) {
     RenderOptions options = square(192, 4);
     const RenderResult result = render(scene_of(test::moon(degrees).json), options);
@@ -240,7 +240,7 @@ Cells cells_of(const compiler::CompiledScene& scene, LightSampling way, int spp,
   return result;
 }
 
-TEST_CASE("light: looking for lights, hitting them and both give one picture", "[render][light][heavy]") {
+TEST_CASE("light: looking for lights, hitting them and both give one picture", "[light][render][heavy]") {
   const auto scene = scene_of(test::kAreaLightRoom);
   const Cells both = cells_of(scene, LightSampling::Mis, 32, 0);
   for (const LightSampling way : {LightSampling::Nee, LightSampling::Bsdf}) {

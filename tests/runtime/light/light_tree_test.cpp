@@ -36,7 +36,7 @@ std::vector<LightBounds> random_lights(std::uint32_t count) {
 const LightSampleContext kQueries[] = {
     {{0, -3, 0}, {0, 1, 0}}, {{3, 0, -2}, {0.6f, 0, 0.8f}}, {{40, 9, 0}, {-1, 0, 0}}, {{1, 1, 1}, {0, -1, 0}, true}};
 
-TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[lights]") {
+TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[light]") {
   for (const std::uint32_t count : {1u, 5u, 32u, 33u, 500u}) {
     const LightTree tree(random_lights(count));
     for (const LightSampleContext& query : kQueries) {
@@ -66,7 +66,7 @@ TEST_CASE("light tree: probabilities sum to 1, and choices follow them", "[light
   }
 }
 
-TEST_CASE("light tree: what light can reach has a probability", "[lights]") {
+TEST_CASE("light tree: what light can reach has a probability", "[light]") {
   const std::vector<LightBounds> lights = random_lights(300);
   const LightTree tree(lights);
   int checked = 0;
@@ -90,7 +90,7 @@ TEST_CASE("light tree: what light can reach has a probability", "[lights]") {
   CHECK(checked > 5000);
 }
 
-TEST_CASE("light tree: an estimate is the irradiance of what is far and faces the place", "[lights]") {
+TEST_CASE("light tree: an estimate is the irradiance of what is far and faces the place", "[light]") {
   LightBounds light;
   light.centre = {0, 10, 0};
   light.intensity = 4;
@@ -105,7 +105,7 @@ TEST_CASE("light tree: an estimate is the irradiance of what is far and faces th
   CHECK(importance(light, {{0, 0, 0}, {0, 1, 0}}) == Approx(0.04));
 }
 
-TEST_CASE("light tree: near() finds every ball in reach", "[lights]") {
+TEST_CASE("light tree: near() finds every ball in reach", "[light]") {
   const std::vector<LightBounds> lights = random_lights(400);
   const LightTree tree(lights);
   for (std::uint32_t k = 0; k < 50; ++k) {

@@ -21,7 +21,7 @@ compiler::Background::Sky sky_at(double elevation, double turbidity) {
 
 double lum(glm::vec3 c) { return static_cast<double>(luminance(c)); }
 
-TEST_CASE("sky: the zenith has the luminance of the model, 10 kcd/m^2 being 1", "[lights]") {
+TEST_CASE("sky: the zenith has the luminance of the model, 10 kcd/m^2 being 1", "[light]") {
   for (const double elevation : {10.0, 40.0, 80.0}) {
     for (const double t : {2.5, 5.0}) {
       const double theta = (90 - elevation) * M_PI / 180, chi = (4.0 / 9 - t / 120) * (M_PI - 2 * theta);
@@ -32,7 +32,7 @@ TEST_CASE("sky: the zenith has the luminance of the model, 10 kcd/m^2 being 1", 
   }
 }
 
-TEST_CASE("sky: around noon its mean is about 1, and the zenith is blue", "[lights]") {
+TEST_CASE("sky: around noon its mean is about 1, and the zenith is blue", "[light]") {
   const Sky sky(sky_at(60, 3));
   double mean = 0;
   constexpr int kSteps = 100;
@@ -49,7 +49,7 @@ TEST_CASE("sky: around noon its mean is about 1, and the zenith is blue", "[ligh
   CHECK(away.z > 1.5f * away.x);
 }
 
-TEST_CASE("sky: the sun gives 100 klx from high up, and is red and dim when low", "[lights]") {
+TEST_CASE("sky: the sun gives 100 klx from high up, and is red and dim when low", "[light]") {
   const glm::vec3 high = Sky(sky_at(70, 2.5)).sun_irradiance(), low = Sky(sky_at(3, 2.5)).sun_irradiance();
   CHECK(lum(high) > 9);  // of 13.31 outside the atmosphere
   CHECK(lum(high) < 13.31);
@@ -61,7 +61,7 @@ TEST_CASE("sky: the sun gives 100 klx from high up, and is red and dim when low"
   CHECK(lum(Sky(twice).radiance({0, 1, 0})) == Approx(2 * lum(Sky(sky_at(70, 2.5)).radiance({0, 1, 0}))));
 }
 
-TEST_CASE("sky: every direction has a finite radiance, and the ground is what it reflects", "[lights]") {
+TEST_CASE("sky: every direction has a finite radiance, and the ground is what it reflects", "[light]") {
   for (const double elevation : {0.0, 0.1, 30.0, 90.0}) {
     for (const double t : {2.0, 10.0}) {
       const Sky sky(sky_at(elevation, t));

@@ -120,7 +120,7 @@ void expect_promised(const char* scene_text, const std::vector<Known>& known) {
   }
 }
 
-TEST_CASE("method: the table is in the order of the enum, and its names differ") {
+TEST_CASE("method: the table is in the order of the enum, and its names differ", "[march]") {
   std::map<std::string_view, int> names;
   for (std::size_t i = 0; i < std::size(kMethods); ++i) {
     CHECK(static_cast<std::size_t>(kMethods[i].method) == i);

@@ -53,7 +53,7 @@ const dvec3 kOnBox(0.5, 0.1, 0.2);
 const std::string kPlaced = R"("scale": 2, "rotate": [0, 90, 0], "translate": [3, 1, -2])";
 dvec3 placed(dvec3 q) { return dvec3(2 * q.z, 2 * q.y, -2 * q.x) + dvec3(3, 1, -2); }
 
-TEST_CASE("object space: a body takes its grain along wherever the material stands", "[object_space]") {
+TEST_CASE("object space: a body takes its grain along wherever the material stands", "[march][object_space]") {
   check_grain(scene_of("{" + kBox + R"(, "material": "oak"})"), kOnBox, kOnBox);
   const std::string within = "{" + kBox + R"(, "material": "oak"})", bare = "{" + kBox + "}";
   const auto group = [](const std::string& of, const std::string& more) {
@@ -76,7 +76,7 @@ TEST_CASE("object space: a body takes its grain along wherever the material stan
   }
 }
 
-TEST_CASE("object space: texts mean the same, painted before a move or after", "[object_space]") {
+TEST_CASE("object space: texts mean the same, painted before a move or after", "[march][object_space]") {
   const std::string head = R"~(fathom 1
 let oak = diffuse(space = "object", color = [0.5 + 0.25*sin(3*x), 0.5 + 0.25*sin(5*y), 0.5 + 0.25*sin(7*z)])
 object box([0.5, 0.4, 0.3]))~";
@@ -90,7 +90,7 @@ object box([0.5, 0.4, 0.3]))~";
   }
 }
 
-TEST_CASE("object space: uses and copies have the same grain, each its own", "[object_space]") {
+TEST_CASE("object space: uses and copies have the same grain, each its own", "[march][object_space]") {
   const auto with_nodes = [](const std::string& node, const std::string& objects) {
     return test::compiled(R"({"version": 1, "materials": {)" + kOak + R"(}, "nodes": {"block": )" + node +
                           R"(}, "objects": [)" + objects + "]}");
@@ -109,7 +109,7 @@ TEST_CASE("object space: uses and copies have the same grain, each its own", "[o
   for (const double copy : {-2, 0, 1, 2}) check_grain(row, kOnBox + dvec3(2 * copy, 1, 0), kOnBox);
 }
 
-TEST_CASE("object space: what stands below the material is not undone, but for moves", "[object_space]") {
+TEST_CASE("object space: what stands below the material is not undone, but for moves", "[march][object_space]") {
   const std::string row = R"({"type": "repetition", "period": [2, 0, 0], "count": [5, 1, 1], "of": {)" + kBox + R"(},
       "material": "oak", "translate": [0, 1, 0]})";
   check_grain(scene_of(row), kOnBox + dvec3(4, 1, 0), kOnBox + dvec3(4, 0, 0));
@@ -118,7 +118,7 @@ TEST_CASE("object space: what stands below the material is not undone, but for m
   check_grain(scene_of(pair), kOnBox + dvec3(3, 1, 0), kOnBox + dvec3(3, 0, 0));
 }
 
-TEST_CASE("object space: mirrors and twists above the material are undone", "[object_space]") {
+TEST_CASE("object space: mirrors and twists above the material are undone", "[march][object_space]") {
   const std::string block = "{" + kBox + R"(, "material": "oak", "translate": [2, 0, 0]})";
   const CompiledScene mirrored = scene_of(R"({"type": "mirror", "normal": [1, 0, 0], "of": )" + block + "}");
   check_grain(mirrored, kOnBox + dvec3(2, 0, 0), kOnBox);
@@ -138,7 +138,7 @@ TEST_CASE("object space: mirrors and twists above the material are undone", "[ob
   CHECK(std::max(off(one), off(other)) > 1e-2);
 }
 
-TEST_CASE("object space: a pattern has its own space, and what it mixes has that, too", "[object_space]") {
+TEST_CASE("object space: a pattern has its own space, and what it mixes has that, too", "[march][object_space]") {
   const auto color = [](const std::string& material) {
     const std::string text = R"("m": {"type": "diffuse", )" + material + "}";
     return color_at(scene_of("{" + kBox + R"(, "material": "m", "translate": [1, 0, 0]})", text), {1.5, 0.1, 0.2});
@@ -153,7 +153,7 @@ TEST_CASE("object space: a pattern has its own space, and what it mixes has that
   CHECK(color(nested + "}") == vec3(0.75f * 0.75f));
 }
 
-TEST_CASE("object space: far from zero the grain is the node's as well", "[object_space]") {
+TEST_CASE("object space: far from zero the grain is the node's as well", "[march][object_space]") {
   const CompiledScene moved = scene_of("{" + kBox + R"(, "material": "oak", "translate": [100000, 3, 0]})");
   CHECK(moved.origin != dvec3(0));
   check_grain(moved, kOnBox + dvec3(100000, 3, 0), kOnBox);
@@ -165,7 +165,7 @@ TEST_CASE("object space: far from zero the grain is the node's as well", "[objec
   check_grain(pair, kOnBox + dvec3(100000, 3, 0), kOnBox + dvec3(100000, 3, 0));
 }
 
-TEST_CASE("object space: a scene without it has the programs it had", "[object_space]") {
+TEST_CASE("object space: a scene without it has the programs it had", "[march][object_space]") {
   const std::string object = "{" + kBox + R"(, "material": "m", "translate": [1, 2, 3]})";
   const CompiledScene world = scene_of(object, R"("m": {"type": "diffuse", "color": ")" + std::string("x") + "\"}");
   CHECK(world.surface.program().words == world.distance.program().words);
@@ -214,7 +214,8 @@ double apart(const Film& a, const Film& b) {
 }
 
 // The reference moves the patterns by hand, with one material per body.
-TEST_CASE("object space: hits, blends and lamps show the patterns of the moved bodies", "[object_space][render]") {
+TEST_CASE("object space: hits, blends and lamps show the patterns of the moved bodies",
+          "[march][object_space][render]") {
   RenderOptions options;
   options.width = 48, options.height = 32, options.spp = 4, options.threads = 2;
   const Film moved = render(room(kFusedTranslate), options).film, still = render(room(kStill), options).film;
@@ -228,7 +229,7 @@ TEST_CASE("object space: hits, blends and lamps show the patterns of the moved b
 }
 
 TEST_CASE("object space: light that is sampled and light that is hit are the same",
-          "[object_space][render][released]") {
+          "[march][object_space][render][released]") {
   RenderOptions options;
   options.width = 24, options.height = 16, options.spp = 4096, options.threads = 2, options.rr_depth = 2;
   const CompiledScene own = room(kOwn);
@@ -263,7 +264,7 @@ std::string blocks(int count) {
   return objects;
 }
 
-TEST_CASE("object space: regions, threads and tiles leave no trace", "[object_space][render][threads]") {
+TEST_CASE("object space: regions, threads and tiles leave no trace", "[march][object_space][render][threads]") {
   const CompiledScene scene =
       test::compiled(R"({"version": 1, "camera": {"position": [0, 3, 3], "target": [0, 0, -2]},
       "background": [1, 1, 1], "materials": {)" +

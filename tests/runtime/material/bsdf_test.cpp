@@ -46,7 +46,7 @@ Albedo albedo(const Case& c, float cos, int n) {
   return {mean, std::sqrt(std::max(squares - mean * mean, 0.0) / n)};
 }
 
-TEST_CASE("bsdf: Fresnel's equations at their known points", "[runtime]") {
+TEST_CASE("bsdf: Fresnel's equations at their known points", "[material]") {
   CHECK(fresnel(1, 1.5f) == Approx(0.04).epsilon(1e-6));
   CHECK(fresnel(1, 1 / 1.5f) == Approx(0.04).epsilon(1e-6));
   CHECK(fresnel(0, 1.5f) == Approx(1));
@@ -60,14 +60,14 @@ TEST_CASE("bsdf: Fresnel's equations at their known points", "[runtime]") {
   CHECK(fresnel(0.3f, 1) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("bsdf: reflectance is the same from both sides", "[runtime]") {
+TEST_CASE("bsdf: reflectance is the same from both sides", "[material]") {
   for (float cos_i = 0.05f; cos_i < 1; cos_i += 0.05f) {
     const float cos_t = std::sqrt(1 - (1 - cos_i * cos_i) / (1.5f * 1.5f));
     CHECK(fresnel(cos_i, 1.5f) == Approx(fresnel(cos_t, 1 / 1.5f)).epsilon(1e-4));
   }
 }
 
-TEST_CASE("bsdf: mirrors and Snell's law", "[runtime]") {
+TEST_CASE("bsdf: mirrors and Snell's law", "[material]") {
   const glm::vec3 normal(0, 1, 0), wo = glm::normalize(glm::vec3(-1, 1, 0));
   CHECK(glm::length(reflect_about(wo, normal) - glm::normalize(glm::vec3(1, 1, 0))) < 1e-6f);
   const glm::vec3 wi = refract_through(wo, normal, 1.5f);
@@ -76,7 +76,7 @@ TEST_CASE("bsdf: mirrors and Snell's law", "[runtime]") {
   CHECK(glm::length(wi) == Approx(1).epsilon(1e-6));
 }
 
-TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only what passes", "[runtime]") {
+TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only what passes", "[material]") {
   MaterialPoint m;
   m.type = MaterialType::Transparent;
   m.base_color = glm::vec3(0.5f);
@@ -97,7 +97,7 @@ TEST_CASE("bsdf: glass reflects as often as it reflects light, and tints only wh
   CHECK(std::abs(reflected - n * expected) < 4 * std::sqrt(n * expected * (1 - expected)));
 }
 
-TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[runtime]") {
+TEST_CASE("bsdf: a sample weighs what is evaluated for its direction", "[material]") {
   for (const Case& c : test::materials()) {
     for (float cos : kCosines) {
       const Bsdf bsdf = c.bsdf(towards(cos, 0.2f));
@@ -149,15 +149,15 @@ void check_densities(int samples, int rows) {
   }
 }
 
-TEST_CASE("bsdf: every material passes a chi-square test against its density", "[runtime]") {
+TEST_CASE("bsdf: every material passes a chi-square test against its density", "[material]") {
   check_densities(test::scaled_cases(20000), 12);
 }
 
-TEST_CASE("bsdf: every material passes a chi-square test of two hundred thousand samples", "[runtime][heavy]") {
+TEST_CASE("bsdf: every material passes a chi-square test of two hundred thousand samples", "[material][heavy]") {
   check_densities(200000, 20);
 }
 
-TEST_CASE("bsdf: light goes either way alike", "[runtime]") {
+TEST_CASE("bsdf: light goes either way alike", "[material]") {
   for (const Case& c : test::materials()) {
     const double worst = test::worst_asymmetry(c, 4000, 7);
     CAPTURE(c.name, worst);
@@ -165,7 +165,7 @@ TEST_CASE("bsdf: light goes either way alike", "[runtime]") {
   }
 }
 
-TEST_CASE("bsdf: nothing gives more light than it gets", "[runtime]") {
+TEST_CASE("bsdf: nothing gives more light than it gets", "[material]") {
   for (const Case& c : test::layered_materials()) {
     for (float cos : kCosines) {
       CAPTURE(c.name, c.material.roughness, c.material.diffuse_roughness, cos);
@@ -176,7 +176,7 @@ TEST_CASE("bsdf: nothing gives more light than it gets", "[runtime]") {
   }
 }
 
-TEST_CASE("bsdf: what is white loses nothing", "[runtime]") {
+TEST_CASE("bsdf: what is white loses nothing", "[material]") {
   for (const Case& c : test::white_materials()) {
     for (float cos : kCosines) {
       CAPTURE(c.name, c.material.roughness, cos);
@@ -187,7 +187,7 @@ TEST_CASE("bsdf: what is white loses nothing", "[runtime]") {
   }
 }
 
-TEST_CASE("bsdf: varnish over a white surface loses at most a few hundredths", "[runtime]") {
+TEST_CASE("bsdf: varnish over a white surface loses at most a few hundredths", "[material]") {
   for (const MaterialPoint& base : {metal(0.25f), metal(0), principled(0.5f), principled(0)}) {
     for (float coat_roughness : {0.0f, 0.4f}) {
       Case c{"varnish", base};
@@ -213,7 +213,7 @@ double inner_reflection(double eta) {
   return 1 - passed / (eta * eta);
 }
 
-TEST_CASE("bsdf: a coat darkens what it sends back to the base again and again", "[runtime]") {
+TEST_CASE("bsdf: a coat darkens what it sends back to the base again and again", "[material]") {
   const glm::vec3 wo = towards(0.7f, 0.1f), wi = towards(0.4f, 0.6f);
   for (const float gray : {0.0f, 0.2f, 0.8f, 1.0f}) {
     MaterialPoint m = coated(0);
@@ -230,7 +230,7 @@ TEST_CASE("bsdf: a coat darkens what it sends back to the base again and again",
   }
 }
 
-TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees", "[runtime]") {
+TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees", "[material]") {
   MaterialPoint gold = metal(0);
   gold.base_color = {1, 0.7f, 0.3f};
   gold.specular_color = {0.9f, 1, 0.5f};
@@ -248,7 +248,7 @@ TEST_CASE("bsdf: a metal has the colours it is given, facing and at 82 degrees",
   CHECK(glm::length(glm::vec3(sum) - tint.average()) < 1e-4f);
 }
 
-TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]") {
+TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[material]") {
   MaterialPoint smooth;
   smooth.type = MaterialType::Transparent;
   smooth.base_color = glm::vec3(1);
@@ -267,7 +267,7 @@ TEST_CASE("bsdf: radiance is what it was once it has left the glass", "[runtime]
   }
 }
 
-TEST_CASE("bsdf: a thin wall lets straight through what a slab does", "[runtime]") {
+TEST_CASE("bsdf: a thin wall lets straight through what a slab does", "[material]") {
   const Bsdf pane(glass(0, true), kNormal, kNormal, 1.5f, false);
   CHECK(pane.is_delta());
   // T / (1 + R) with R = .04.
@@ -281,7 +281,7 @@ TEST_CASE("bsdf: a thin wall lets straight through what a slab does", "[runtime]
   CHECK(passed / 1e4 == Approx(0.92308).margin(2e-4));
 }
 
-TEST_CASE("bsdf: what is not opaque has holes", "[runtime]") {
+TEST_CASE("bsdf: what is not opaque has holes", "[material]") {
   MaterialPoint m = principled(0.5f);
   m.opacity = 0.25f;
   const glm::vec3 wo = towards(0.4f, 0.7f);
@@ -297,7 +297,7 @@ TEST_CASE("bsdf: what is not opaque has holes", "[runtime]") {
   CHECK(albedo({"hole", m}, 0.4f, 20000).mean == Approx(1).margin(1e-2));
 }
 
-TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[runtime]") {
+TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[material]") {
   MaterialPoint pane = glass(0, true), hole = principled(0.5f), mirror;
   pane.transmission_color = {0.9f, 0.5f, 0.3f};
   pane.transmission = 0.8f;
@@ -340,7 +340,7 @@ TEST_CASE("bsdf: what goes straight through is the mean of what is drawn so", "[
   CHECK(facing(glass(0.2f, true)) == glm::vec3(0));
 }
 
-TEST_CASE("bsdf: light goes straight through either way alike", "[runtime]") {
+TEST_CASE("bsdf: light goes straight through either way alike", "[material]") {
   MaterialPoint pane = glass(0, true);
   pane.coat_weight = 0.7f;
   pane.opacity = 0.6f;
@@ -351,7 +351,7 @@ TEST_CASE("bsdf: light goes straight through either way alike", "[runtime]") {
   }
 }
 
-TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[runtime]") {
+TEST_CASE("bsdf: mirrors are told from what light sampling can find", "[material]") {
   const auto is_delta = [](const MaterialPoint& m) { return Bsdf(m, kNormal, kNormal, 1.5f, false).is_delta(); };
   MaterialPoint mirror;
   mirror.type = MaterialType::Specular;

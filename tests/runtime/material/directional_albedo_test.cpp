@@ -17,7 +17,7 @@ namespace {
 
 constexpr Lattice kFine{10946, 6765};
 
-TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[runtime]") {
+TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[material]") {
   struct Row {
     float alpha;
     std::array<double, 4> albedo;  // at cosines 1, .8, .5, .2
@@ -40,7 +40,7 @@ TEST_CASE("energy: what GGX mirrors reflect is as two other quadratures say", "[
   CHECK(static_cast<double>(conductor_loss(1).at(1)) == Approx(std::log(2.0)).margin(1e-3));
 }
 
-TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the mean", "[runtime]") {
+TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the mean", "[material]") {
   const int n = test::scaled_cases(100);
   std::array<double, 4> worst{}, squares{};
   Sampler sampler(5, 0, 0, 0);
@@ -67,7 +67,7 @@ TEST_CASE("energy: tables are within 1.5e-2 of their integrals, 1.5e-3 in the me
 }
 
 // Accurate enough that materials return at most a thousandth more than they receive.
-TEST_CASE("energy: what glass loses on leaving it is known to 5e-4", "[runtime]") {
+TEST_CASE("energy: what glass loses on leaving it is known to 5e-4", "[material]") {
   for (const float alpha : {0.1f, 0.25f, 0.5f, 0.8f}) {
     for (const float cos : {0.05f, 0.2f, 0.5f}) {
       CAPTURE(alpha, cos);
@@ -77,7 +77,7 @@ TEST_CASE("energy: what glass loses on leaving it is known to 5e-4", "[runtime]"
   }
 }
 
-TEST_CASE("energy: a row's average is that of the function it gives", "[runtime]") {
+TEST_CASE("energy: a row's average is that of the function it gives", "[material]") {
   for (const DirectionalAlbedo& row :
        {smooth_albedo(1.5f), conductor_loss(0.05f), conductor_loss(0.01f), dielectric_loss(0.6f, 1 / 1.5f)}) {
     double sum = 0;
@@ -92,7 +92,7 @@ TEST_CASE("energy: a row's average is that of the function it gives", "[runtime]
   CHECK(DirectionalAlbedo::constant(0.25f).at(0.3f) == Approx(0.25).epsilon(1e-5));
 }
 
-TEST_CASE("energy: a smooth dielectric reflects as Fresnel's equations say", "[runtime]") {
+TEST_CASE("energy: a smooth dielectric reflects as Fresnel's equations say", "[material]") {
   for (float eta : {1.1f, 1.5f, 3.0f}) {
     const DirectionalAlbedo row = smooth_albedo(eta);
     double worst = 0;
@@ -105,7 +105,7 @@ TEST_CASE("energy: a smooth dielectric reflects as Fresnel's equations say", "[r
   CHECK(smooth_albedo(1.5f).average() == Approx(0.0918).margin(1e-4));
 }
 
-TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
+TEST_CASE("energy: threads that ask at once get the same table", "[material]") {
   std::array<DirectionalAlbedo, 4> rows;
   std::vector<std::thread> threads;
   for (DirectionalAlbedo& row : rows) threads.emplace_back([&row] { row = dielectric_loss(0.37f, 1.77f); });
@@ -114,7 +114,7 @@ TEST_CASE("energy: threads that ask at once get the same table", "[runtime]") {
 }
 
 // Compares the tables with their definition, at other points.
-TEST_CASE("energy: what a coat takes too much is the mean of what it dims more", "[runtime]") {
+TEST_CASE("energy: what a coat takes too much is the mean of what it dims more", "[material]") {
   const DirectionalAlbedo coat = smooth_albedo(1.6f);
   Sampler sampler(9, 0, 0, 0);
   for (const float alpha : {0.05f, 0.3f, 0.8f}) {

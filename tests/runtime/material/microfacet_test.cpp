@@ -14,7 +14,7 @@ glm::vec3 direction(float cos, float turn) {
   return {sin * sincos_turn(turn).cos, sin * sincos_turn(turn).sin, cos};
 }
 
-TEST_CASE("microfacet: the facets cover the surface once", "[runtime]") {
+TEST_CASE("microfacet: the facets cover the surface once", "[material]") {
   for (float alpha : {0.02f, 0.1f, 0.5f, 1.0f}) {
     const Ggx ggx(alpha);
     // tan = alpha s / (1 - s) distributes the points as the facets.
@@ -31,7 +31,7 @@ TEST_CASE("microfacet: the facets cover the surface once", "[runtime]") {
   }
 }
 
-TEST_CASE("microfacet: masking is Smith's", "[runtime]") {
+TEST_CASE("microfacet: masking is Smith's", "[material]") {
   for (float alpha : {0.02f, 0.3f, 1.0f}) {
     for (float cos : {0.05f, 0.3f, 0.9f}) {
       const Ggx ggx(alpha);
@@ -47,7 +47,7 @@ TEST_CASE("microfacet: masking is Smith's", "[runtime]") {
   }
 }
 
-TEST_CASE("microfacet: visible normals pass a chi-square test", "[runtime]") {
+TEST_CASE("microfacet: visible normals pass a chi-square test", "[material]") {
   int seed = 0;
   for (float alpha : {0.1f, 0.5f, 1.0f}) {
     for (float cos : {1.0f, 0.5f, 0.05f}) {
@@ -68,7 +68,7 @@ TEST_CASE("microfacet: visible normals pass a chi-square test", "[runtime]") {
   }
 }
 
-TEST_CASE("microfacet: the chi-square test sees a density that is wrong by a few hundredths", "[runtime]") {
+TEST_CASE("microfacet: the chi-square test sees a density that is wrong by a few hundredths", "[material]") {
   const auto sample = [](Sampler& s) { return square_to_cosine_hemisphere(s.next2()); };
   const auto right = [](glm::vec3 w) { return static_cast<double>(square_to_cosine_hemisphere_pdf(w)); };
   const auto wrong = [&](glm::vec3 w) { return right(w) * (w.x > 0 ? 1.03 : 0.97); };

@@ -20,7 +20,7 @@ dvec3 random_point(Sampler& sampler, double size) {
   return {x, y, next()};
 }
 
-TEST_CASE("pattern: a checker changes from cube to cube", "[pattern]") {
+TEST_CASE("pattern: a checker changes from cube to cube", "[material][pattern]") {
   CHECK(checker({0.5, 0.5, 0.5}) == 0);
   CHECK(checker({1.5, 0.5, 0.5}) == 1);
   CHECK(checker({1.5, 1.5, 0.5}) == 0);
@@ -31,7 +31,7 @@ TEST_CASE("pattern: a checker changes from cube to cube", "[pattern]") {
   CHECK(checker({0x1p40 - 0.5, 0.5, 0.5}) == 1);
 }
 
-TEST_CASE("pattern: a plane where cubes end is of one layer", "[pattern]") {
+TEST_CASE("pattern: a plane where cubes end is of one layer", "[material][pattern]") {
   for (const double height : {0.0, 1.0, -3.0}) {
     for (const double off : {-1e-5, 0.0, 1e-5}) {
       CHECK(checker({0.3, height + off, 0.7}) == static_cast<double>(static_cast<int>(std::abs(height)) % 2));
@@ -39,7 +39,7 @@ TEST_CASE("pattern: a plane where cubes end is of one layer", "[pattern]") {
   }
 }
 
-TEST_CASE("pattern: stripes have their width and their softness", "[pattern]") {
+TEST_CASE("pattern: stripes have their width and their softness", "[material][pattern]") {
   const Pattern::Stripes hard{{0, 1, 0}, 0.25, 0}, soft{{0, 1, 0}, 0.25, 1};
   double mean_hard = 0, mean_soft = 0, steepest = 0, last = stripes(soft, {0, -kOffset, 0});
   CHECK(last == Approx(0.5));
@@ -64,7 +64,7 @@ TEST_CASE("pattern: stripes have their width and their softness", "[pattern]") {
   CHECK(stripes(soft, {0, 0.625 - kOffset, 0}) == Approx(1).margin(1e-12));
 }
 
-TEST_CASE("pattern: a gradient is linear between its ends", "[pattern]") {
+TEST_CASE("pattern: a gradient is linear between its ends", "[material][pattern]") {
   const Pattern::Gradient g{{1, 0, 0}, {1, 4, 0}};
   CHECK(gradient(g, {9, -1, 3}) == 0);
   CHECK(gradient(g, {9, 1, 3}) == 0.25);
@@ -72,7 +72,7 @@ TEST_CASE("pattern: a gradient is linear between its ends", "[pattern]") {
   CHECK(gradient(g, {1, 5, 0}) == 1);
 }
 
-TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
+TEST_CASE("pattern: bricks are moved row by row", "[material][pattern]") {
   const Pattern::Bricks b{1, 0.5, 0.1, 0.5};
   CHECK(bricks(b, {0.5, 0.25, 0}) == 0);   // the middle of a brick
   CHECK(bricks(b, {0.02, 0.25, 5}) == 1);  // the brick's side
@@ -87,7 +87,7 @@ TEST_CASE("pattern: bricks are moved row by row", "[pattern]") {
   CHECK(mortar == Approx(1 - 0.9 * 0.8).margin(0.02));
 }
 
-TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pattern]") {
+TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[material][pattern]") {
   for (const double size : {10.0, 1e6, 1e9}) {
     Sampler sampler(2, 0, 0, 0);
     const int count = test::scaled_cases(40000);
@@ -111,7 +111,7 @@ TEST_CASE("pattern: noise keeps its range and mean, near zero and far off", "[pa
   CHECK(gradient_noise({1e30, 0, 0}, 5) == 0);
 }
 
-TEST_CASE("pattern: noise is continuous with its slope, across cells too", "[pattern]") {
+TEST_CASE("pattern: noise is continuous with its slope, across cells too", "[material][pattern]") {
   Sampler sampler(3, 0, 0, 0);
   constexpr double kStep = 1e-5;
   for (int i = 0; i < test::scaled_cases(20000); ++i) {
@@ -126,7 +126,7 @@ TEST_CASE("pattern: noise is continuous with its slope, across cells too", "[pat
   }
 }
 
-TEST_CASE("pattern: octaves add up within [0,1], seeds differ, and no plane is flat", "[pattern]") {
+TEST_CASE("pattern: octaves add up within [0,1], seeds differ, and no plane is flat", "[material][pattern]") {
   const Pattern::Noise n{4, 0.5, 2, 1, 0}, other{4, 0.5, 2, 1, 1}, strong{4, 0.5, 2, 50, 0};
   Sampler sampler(4, 0, 0, 0);
   double mean = 0, plane = 0, difference = 0;
@@ -149,7 +149,7 @@ TEST_CASE("pattern: octaves add up within [0,1], seeds differ, and no plane is f
   CHECK(ends > count / 2);
 }
 
-TEST_CASE("pattern: noise does not repeat along the axes", "[pattern]") {
+TEST_CASE("pattern: noise does not repeat along the axes", "[material][pattern]") {
   for (const int period : {1, 16, 256, 65536}) {
     double difference = 0;
     for (int i = 0; i < 1000; ++i) {
@@ -165,7 +165,7 @@ TEST_CASE("pattern: noise does not repeat along the axes", "[pattern]") {
   }
 }
 
-TEST_CASE("pattern: what is no place has no value", "[pattern]") {
+TEST_CASE("pattern: what is no place has no value", "[material][pattern]") {
   const compiler::Affine still{{dvec3(1, 0, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)}, dvec3(0)};
   CHECK(std::isnan(pattern_value({Pattern::Checker{}, still, 0, 0}, dvec3(NAN, 0, 0))));
   CHECK(pattern_value({Pattern::Checker{}, still, 0, 0}, dvec3(1.5, 0.5, 0.5)) == 1);

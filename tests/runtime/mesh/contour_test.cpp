@@ -58,7 +58,7 @@ std::vector<Crossing> middles(const CellLattice& lattice, const SignedLattice& s
 
 }  // namespace
 
-TEST_CASE("contour: random signs give closed manifolds, with every case of a cell and double edges") {
+TEST_CASE("contour: random signs give closed manifolds, with every case of a cell and double edges", "[mesh]") {
   const CellLattice lattice = make_lattice({glm::dvec3(0), glm::dvec3(7)}, 1);
   REQUIRE(lattice.cells(0) >= 8);
   std::set<unsigned> cases;
@@ -81,7 +81,7 @@ TEST_CASE("contour: random signs give closed manifolds, with every case of a cel
   CHECK(on_faces > 100);  // the vertices that tell double edges apart
 }
 
-TEST_CASE("contour: a surface that its cells do not list is followed") {
+TEST_CASE("contour: a surface that its cells do not list is followed", "[mesh]") {
   const CellLattice lattice = make_lattice({glm::dvec3(0), glm::dvec3(12)}, 1);
   const auto scene = test::compiled_objects(R"({"type": "sphere", "radius": 5, "translate": [6, 6, 6]})");
   const Field prepared = make_field(scene);
@@ -98,7 +98,7 @@ TEST_CASE("contour: a surface that its cells do not list is followed") {
   CHECK(faults_of(made.mesh) == MeshFaults{});
 }
 
-TEST_CASE("contour: crossings lie on the surface, with its normals") {
+TEST_CASE("contour: crossings lie on the surface, with its normals", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "sphere", "radius": 1})");
   const Field prepared = make_field(scene);
   const MeshField field(prepared, compiler::Box::everything());
@@ -112,7 +112,7 @@ TEST_CASE("contour: crossings lie on the surface, with its normals") {
   }
 }
 
-TEST_CASE("lattice: keys and places, and cells that floats do not tell apart") {
+TEST_CASE("lattice: keys and places, and cells that floats do not tell apart", "[mesh]") {
   const LatticePlace place{{5, 1 << 19, 77}};
   CHECK(place_of(key_of(place, 2)).at == place.at);
   CHECK(axis_of(key_of(place, 2)) == 2);

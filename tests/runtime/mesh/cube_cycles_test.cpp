@@ -7,7 +7,7 @@ namespace fathom::cube_cycles_test {
 
 using namespace fathom::runtime;
 
-TEST_CASE("cube cycles: edges and faces agree about corners") {
+TEST_CASE("cube cycles: edges and faces agree about corners", "[mesh]") {
   for (int edge = 0; edge < kCubeEdges; ++edge) {
     const CubeEdge ends = cube_edge(edge);
     CHECK(edge_at(ends.axis, ends.lower) == edge);
@@ -24,7 +24,7 @@ TEST_CASE("cube cycles: edges and faces agree about corners") {
   }
 }
 
-TEST_CASE("cube cycles: in all cases every crossing is in one cycle, which crosses each of its faces") {
+TEST_CASE("cube cycles: in all cases every crossing is in one cycle, which crosses each of its faces", "[mesh]") {
   int most = 0;
   for (unsigned inside = 0; inside < 256; ++inside) {
     for (unsigned open = 0; open < 64; ++open) {
@@ -47,7 +47,7 @@ TEST_CASE("cube cycles: in all cases every crossing is in one cycle, which cross
   CHECK(most == 4);
 }
 
-TEST_CASE("cube cycles: a centre inside the solid joins the diagonal corners of a face") {
+TEST_CASE("cube cycles: a centre inside the solid joins the diagonal corners of a face", "[mesh]") {
   // Corners 0 and 3 are inside, on the lower face across z.
   CHECK(trace_cycles(0b1001, 0).count == 2);
   CHECK(trace_cycles(0b1001, 1u << 4).count == 1);

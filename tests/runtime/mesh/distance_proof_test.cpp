@@ -7,7 +7,7 @@ namespace fathom::distance_proof_test {
 
 using namespace fathom::runtime;
 
-TEST_CASE("distance proof: a triangle beside a plane is proved at its distance and not below") {
+TEST_CASE("distance proof: a triangle beside a plane is proved at its distance and not below", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "box", "half_size": [4, 1, 4]})");
   const Field prepared = make_field(scene);
   const MeshField field(prepared, compiler::Box::everything());
@@ -22,7 +22,7 @@ TEST_CASE("distance proof: a triangle beside a plane is proved at its distance a
   }
 }
 
-TEST_CASE("distance proof: a triangle that faces the wrong way is near and does not hold") {
+TEST_CASE("distance proof: a triangle that faces the wrong way is near and does not hold", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "box", "half_size": [4, 1, 4]})");
   const Field prepared = make_field(scene);
   const MeshField field(prepared, compiler::Box::everything());
@@ -32,7 +32,7 @@ TEST_CASE("distance proof: a triangle that faces the wrong way is near and does 
   CHECK(proof.is_near(0.1));
 }
 
-TEST_CASE("distance proof: small features between samples are found") {
+TEST_CASE("distance proof: small features between samples are found", "[mesh]") {
   // A peg of 0.1 stands on the face, and the triangle passes through its foot.
   const auto scene = test::compiled(R"({"version": 1, "objects": [{"type": "box", "half_size": [4, 1, 4]},
     {"type": "box", "half_size": [0.05, 0.5, 0.05], "translate": [0.517, 1, 0.491]}]})");

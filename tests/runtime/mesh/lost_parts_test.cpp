@@ -17,7 +17,7 @@ std::string objects(const std::string& more) {
 
 }  // namespace
 
-TEST_CASE("lost parts: a thin plate is named, and measured") {
+TEST_CASE("lost parts: a thin plate is named, and measured", "[mesh]") {
   const auto scene = test::compiled(
       objects(R"({"name": "plate", "type": "box", "half_size": [0.4, 0.008, 0.4], "translate": [0, 0.813, 0]})"));
   const MeshResult result = meshed(scene, 40);
@@ -34,7 +34,7 @@ TEST_CASE("lost parts: a thin plate is named, and measured") {
   CHECK(measure(fine.mesh).components == 2);
 }
 
-TEST_CASE("lost parts: a small ball and a narrow gap are named") {
+TEST_CASE("lost parts: a small ball and a narrow gap are named", "[mesh]") {
   const auto ball = test::compiled(
       objects(R"({"name": "ball", "type": "sphere", "radius": 0.004, "translate": [0.013, 0.7, 0.021]})"));
   const MeshResult without = meshed(ball, 40);
@@ -48,7 +48,7 @@ TEST_CASE("lost parts: a small ball and a narrow gap are named") {
   CHECK(closed.lost[0].place.y == Approx(0.5).margin(0.005));
 }
 
-TEST_CASE("lost parts: a scene of thick parts loses nothing") {
+TEST_CASE("lost parts: a scene of thick parts loses nothing", "[mesh]") {
   CHECK(meshed(test::compiled(objects(R"({"type": "sphere", "radius": 0.4, "translate": [0, 0.6, 0]})")), 40)
             .lost.empty());
 }

@@ -24,7 +24,7 @@ double box(glm::dvec3 p) {
 
 }  // namespace
 
-TEST_CASE("mesh: points of the mesh are within the proved bound of closed forms") {
+TEST_CASE("mesh: points of the mesh are within the proved bound of closed forms", "[mesh]") {
   struct Case {
     const char* object;
     double (*distance)(glm::dvec3);
@@ -49,7 +49,7 @@ TEST_CASE("mesh: points of the mesh are within the proved bound of closed forms"
   }
 }
 
-TEST_CASE("mesh: a coarse tolerance holds for the whole mesh") {
+TEST_CASE("mesh: a coarse tolerance holds for the whole mesh", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "torus", "major_radius": 1, "minor_radius": 0.3})");
   MeshOptions options;
   options.tolerance = options.deviation = 0.08;
@@ -61,7 +61,7 @@ TEST_CASE("mesh: a coarse tolerance holds for the whole mesh") {
   CHECK(result.mesh.triangles.size() < 900);
 }
 
-TEST_CASE("mesh: any number of threads gives the same bits") {
+TEST_CASE("mesh: any number of threads gives the same bits", "[mesh]") {
   const auto scene = test::compiled_objects(
       R"({"type": "smooth_union", "k": 0.2, "of": [{"type": "sphere", "radius": 1},
           {"type": "box", "half_size": [1.4, 0.3, 0.3], "rotate": [10, 20, 30]}]})");
@@ -74,7 +74,7 @@ TEST_CASE("mesh: any number of threads gives the same bits") {
   }
 }
 
-TEST_CASE("mesh: a solid cut off at a box is closed") {
+TEST_CASE("mesh: a solid cut off at a box is closed", "[mesh]") {
   const auto scene = test::compiled(R"({"version": 1, "objects": [{"type": "plane", "normal": [0, 1, 0]},
     {"type": "gyroid", "period": 1}]})");
   MeshOptions options;
@@ -94,14 +94,14 @@ TEST_CASE("mesh: a solid cut off at a box is closed") {
   }
 }
 
-TEST_CASE("mesh: an estimated constant leaves no hole") {
+TEST_CASE("mesh: an estimated constant leaves no hole", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "mandelbulb", "iterations": 4})");
   const MeshResult result = meshed(scene, 48);
   REQUIRE(result.end == MeshResult::End::Done);
   CHECK(faults_of(result.mesh) == MeshFaults{});
 }
 
-TEST_CASE("mesh: too many cells, too small cells and no surface are told apart") {
+TEST_CASE("mesh: too many cells, too small cells and no surface are told apart", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "sphere", "radius": 1})");
   MeshOptions options;
   options.tolerance = options.deviation = 0.001;

@@ -7,7 +7,7 @@ namespace fathom::qef_test {
 
 using namespace fathom::runtime;
 
-TEST_CASE("qef: three planes meet in a corner, two in an edge, one leaves its plane free") {
+TEST_CASE("qef: three planes meet in a corner, two in an edge, one leaves its plane free", "[mesh]") {
   const glm::dvec3 corner(0.3, -0.2, 0.6);
   Quadric quadric;
   quadric.add_plane(glm::normalize(glm::dvec3(1, 0.2, 0)), corner);
@@ -21,7 +21,7 @@ TEST_CASE("qef: three planes meet in a corner, two in an edge, one leaves its pl
   CHECK(glm::distance(minimise(quadric, glm::dvec3(0), 0.01), corner) < 1e-12);
 }
 
-TEST_CASE("qef: within a box the point stays in it, on the nearest part of the planes") {
+TEST_CASE("qef: within a box the point stays in it, on the nearest part of the planes", "[mesh]") {
   const compiler::Box box{glm::dvec3(-1), glm::dvec3(1)};
   Quadric quadric;
   quadric.add_plane({1, 0, 0}, {3, 0, 0});
@@ -32,7 +32,7 @@ TEST_CASE("qef: within a box the point stays in it, on the nearest part of the p
   CHECK(x.y == Approx(0.5).margin(0.02));
 }
 
-TEST_CASE("qef: sums of quadrics are the quadrics of all planes") {
+TEST_CASE("qef: sums of quadrics are the quadrics of all planes", "[mesh]") {
   Quadric a, b, both;
   const glm::dvec3 n = glm::normalize(glm::dvec3(1, 2, 3));
   a.add_plane(n, {1, 0, 0}), b.add_plane({0, 1, 0}, {0, 2, 0}, 3);

@@ -15,7 +15,7 @@ using fathom::test::MeshFaults;
 
 }  // namespace
 
-TEST_CASE("simplify: a box becomes its corners, and keeps its volume") {
+TEST_CASE("simplify: a box becomes its corners, and keeps its volume", "[mesh]") {
   const auto scene = test::compiled_objects(R"({"type": "box", "half_size": [1, 0.6, 0.4], "rotate": [20, 30, 10]})");
   const MeshResult result = meshed(scene, 48);
   REQUIRE(result.end == MeshResult::End::Done);
@@ -34,7 +34,7 @@ TEST_CASE("simplify: a box becomes its corners, and keeps its volume") {
   }
 }
 
-TEST_CASE("simplify: borders of materials stay where they are") {
+TEST_CASE("simplify: borders of materials stay where they are", "[mesh]") {
   const auto scene = test::compiled(R"({"version": 1,
     "materials": {"red": {"type": "diffuse", "color": [1, 0, 0]}, "blue": {"type": "diffuse", "color": [0, 0, 1]}},
     "objects": [{"type": "box", "half_size": [0.5, 0.5, 0.5], "material": "red"},

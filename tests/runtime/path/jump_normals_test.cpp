@@ -17,7 +17,7 @@ glm::vec3 normal_at(const Field& field, const compiler::CompiledScene& scene, gl
   return point.normal;
 }
 
-TEST_CASE("jump normals: a step's riser faces the side, not the way of the gradient", "[runtime]") {
+TEST_CASE("jump normals: a step's riser faces the side, not the way of the gradient", "[path]") {
   const auto scene =
       scene_of(R"_("objects": [{"type": "expression", "formula": "y - 0.5 * floor(x)", "half_size": [3, 3, 3]}])_");
   const Field field = make_field(scene);
@@ -30,7 +30,7 @@ TEST_CASE("jump normals: a step's riser faces the side, not the way of the gradi
   CHECK(glm::length(normal_at(field, scene, {1.5, 0.5, 0.1}, {-1, 1, 0}) - glm::vec3(0, 1, 0)) < 1e-5f);
 }
 
-TEST_CASE("jump normals: a slanted wall between slopes faces as it stands", "[runtime]") {
+TEST_CASE("jump normals: a slanted wall between slopes faces as it stands", "[path]") {
   const auto scene = scene_of(
       R"_("objects": [{"type": "expression", "formula": "y - 0.5 * x - step(0, x - 0.3 * y)", "half_size": [3, 3, 3]}])_");
   const Field field = make_field(scene);

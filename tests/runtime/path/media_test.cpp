@@ -32,7 +32,7 @@ std::string layer(double top, double bottom, const char* material) {
          std::to_string((top + bottom) / 2) + R"(, 0], "material": ")" + material + "\"}";
 }
 
-TEST_CASE("media: absorption says where one medium ends and another begins", "[render][released]") {
+TEST_CASE("media: absorption says where one medium ends and another begins", "[path][render][released]") {
   // Without refraction: 0.4 of red glass and 0.6 of blue, which overlap.
   const std::string materials = R"("red": {"type": "transparent", "ior": 1, "absorption": [0, 1, 1], "priority": 1},
       "blue": {"type": "transparent", "ior": 1, "absorption": [2, 1, 0]})";
@@ -47,7 +47,8 @@ TEST_CASE("media: absorption says where one medium ends and another begins", "[r
         Approx(2 * std::exp(-2 * 0.6)).epsilon(1e-4));
 }
 
-TEST_CASE("media: where water meets glass the step of the index is that between the two", "[render][released]") {
+TEST_CASE("media: where water meets glass the step of the index is that between the two",
+          "[path][render][released]") {
   // Air, glass 1.5, water 1.5 as another material, air: the middle surface reflects nothing, so it is one slab.
   const std::string same = R"("glass": {"type": "transparent"}, "water": {"type": "transparent"})";
   const std::string layers = layer(0.5, -0.1, "glass") + "," + layer(0, -0.5, "water");
@@ -61,7 +62,7 @@ TEST_CASE("media: where water meets glass the step of the index is that between 
   CHECK(seen_through(two, layers).x == Approx(2 / resistance).epsilon(1e-2));
 }
 
-TEST_CASE("media: what lies within glass is seen through it", "[render]") {
+TEST_CASE("media: what lies within glass is seen through it", "[path][render]") {
   const std::string materials = R"("glass": {"type": "transparent", "ior": 1, "absorption": [1, 1, 1]},
       "lamp": {"type": "emissive", "emission": [1, 1, 1]})";
   const glm::dvec3 seen = seen_through(materials, layer(0.5, -0.5, "glass") + "," + layer(0, -0.3, "lamp"));
@@ -83,7 +84,7 @@ double red_of(const std::string& json) {
 
 // Regression: all rays began in the medium at the camera's own position. For a ball cut by the camera's image plane,
 // all rays that missed the ball were black.
-TEST_CASE("media: every camera ray begins in what fills its own place", "[render]") {
+TEST_CASE("media: every camera ray begins in what fills its own place", "[path][render]") {
   const std::string plane = R"("type": "orthographic", "position": [0.5, 0, 0], "target": [0.5, 0, -1], "width": )";
   // The path length is half a chord.
   CHECK(red_of(ball_round(plane + "0.002")) == Approx(std::exp(-std::sqrt(0.75))).epsilon(1e-3));
@@ -99,7 +100,7 @@ TEST_CASE("media: every camera ray begins in what fills its own place", "[render
 }
 
 // Regression: light that left the glass on a table continued inside the table, because a union has no surface there.
-TEST_CASE("media: glass that stands in a table shows the table", "[render]") {
+TEST_CASE("media: glass that stands in a table shows the table", "[path][render]") {
   const std::string materials = R"("glass": {"type": "transparent", "ior": 1},
       "table": {"type": "emissive", "emission": [1, 0.5, 0]})";
   const glm::dvec3 seen = seen_through(materials, layer(0.5, -0.2, "glass") + "," + layer(0, -1, "table"));

@@ -26,7 +26,7 @@ float random_unit(std::mt19937& random) {
   return random() % 4 == 0 ? kCases[random() % 9] : static_cast<float>(random() >> 8) * 0x1p-24f;
 }
 
-TEST_CASE("scatter lanes: diffuse samples are those of the BSDF", "[render]") {
+TEST_CASE("scatter lanes: diffuse samples are those of the BSDF", "[path][render]") {
   std::mt19937 random(1);
   const auto batch = std::make_unique<VertexBatch>();
   MaterialPoint material;

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> ids_of(std::span<const RayHit> ray_hits) {
 
 using Ids = std::vector<std::uint32_t>;
 
-TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[render]") {
+TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[path][render]") {
   std::vector<PathState> paths(8);
   for (const std::size_t id : {1, 3, 5, 7}) paths[id].has_shadow_ray = true;
   std::vector<RayHit> ray_hits;
@@ -60,7 +60,7 @@ TEST_CASE("stages: ray hits are grouped by the next stage of their paths", "[ren
   }
 }
 
-TEST_CASE("stages: the MIS weights of both ways to find a light add up to 1", "[render]") {
+TEST_CASE("stages: the MIS weights of both ways to find a light add up to 1", "[path][render]") {
   for (const float bsdf_pdf : {1e-3f, 0.7f, 1.0f, 250.0f}) {
     for (const float light_pdf : {1e-3f, 0.4f, 1.0f, 1e4f}) {
       CAPTURE(bsdf_pdf, light_pdf);
@@ -77,7 +77,7 @@ TEST_CASE("stages: the MIS weights of both ways to find a light add up to 1", "[
   CHECK(bsdf_mis_weight(LightSampling::Bsdf, 1, 1) == 1);
 }
 
-TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium", "[render]") {
+TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium", "[path][render]") {
   const auto scene = scene_of(R"("camera": {"position": [0, 0, 0.5], "target": [0, 0, 0]},
       "film": {"width": 4, "height": 4}, "render": {"spp": 1},
       "materials": {"glass": {"type": "transparent", "ior": 1.25, "absorption": [1, 2, 3]}},
@@ -101,7 +101,7 @@ TEST_CASE("stages: a path begins with the camera's ray, in the camera's medium",
   CHECK(paths[0].key.x == 3);
 }
 
-TEST_CASE("stages: only light of two bounces or more is clamped", "[render]") {
+TEST_CASE("stages: only light of two bounces or more is clamped", "[path][render]") {
   Settings settings{};
   settings.clamp = 2.0;
   for (const int bounces : {0, 1, 2, 3}) {
@@ -113,7 +113,7 @@ TEST_CASE("stages: only light of two bounces or more is clamped", "[render]") {
   }
 }
 
-TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[render]") {
+TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[path][render]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const RenderContext context = context_of(scene);
   std::vector<PathState> paths(4);
@@ -132,7 +132,7 @@ TEST_CASE("stages: a shadow ray brings light unless it is occluded", "[render]")
   }
 }
 
-TEST_CASE("stages: a shadow ray that passes a surface is attenuated by its medium", "[render]") {
+TEST_CASE("stages: a shadow ray that passes a surface is attenuated by its medium", "[path][render]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const RenderContext context = context_of(scene);
   std::vector<PathState> paths(2);
@@ -150,7 +150,7 @@ TEST_CASE("stages: a shadow ray that passes a surface is attenuated by its mediu
   CHECK(paths[1].result.radiance == glm::vec3(0));
 }
 
-TEST_CASE("stages: a BSDF sample is a bounce, or a null interaction", "[render]") {
+TEST_CASE("stages: a BSDF sample is a bounce, or a null interaction", "[path][render]") {
   Settings settings{};
   settings.rr_depth = 10;
   const Hit hit{{0, 0, 0}, {0, 1, 0}, 1, 0};

@@ -18,7 +18,7 @@ SurfacePoint find(const compiler::CompiledScene& scene, const Hit& hit) {
   return point;
 }
 
-TEST_CASE("surface: the normal faces the ray, on either side", "[runtime]") {
+TEST_CASE("surface: the normal faces the ray, on either side", "[path]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 2}])");
   const SurfacePoint outside = find(scene, {{0, 2, 0}, {0, 1, 0}, 1, 1e-7f});
   const SurfacePoint inside = find(scene, {{0, 2, 0}, {0, -1, 0}, -1, 1e-7f});
@@ -26,7 +26,7 @@ TEST_CASE("surface: the normal faces the ray, on either side", "[runtime]") {
   CHECK(glm::length(inside.normal - glm::vec3(0, -1, 0)) < 1e-6f);
 }
 
-TEST_CASE("surface: each object's material is its own", "[runtime]") {
+TEST_CASE("surface: each object's material is its own", "[path]") {
   const auto scene = scene_of(R"("materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}},
       "objects": [{"type": "sphere", "radius": 1, "material": "a"},
                   {"type": "sphere", "radius": 1, "translate": [3, 0, 0], "material": "b"}])");
@@ -35,12 +35,12 @@ TEST_CASE("surface: each object's material is its own", "[runtime]") {
   CHECK(name({3, 1, 0}) == "b");
 }
 
-TEST_CASE("surface: without a gradient the normal is the way back", "[runtime]") {
+TEST_CASE("surface: without a gradient the normal is the way back", "[path]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   CHECK(find(scene, {{0, 0, 0}, {0, 0, 1}, 1, 0}).normal == glm::vec3(0, 0, 1));
 }
 
-TEST_CASE("surface: a gradient that faces away is turned just far enough", "[runtime]") {
+TEST_CASE("surface: a gradient that faces away is turned just far enough", "[path]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Field field = make_field(scene);
   SurfaceRows rows{};
@@ -77,7 +77,7 @@ TEST_CASE("surface: a gradient that faces away is turned just far enough", "[run
 }
 
 // d_f is a longer way where the field is flatter than the bound of its cell.
-TEST_CASE("surface: new rays start further from a surface that is flat for its cell", "[runtime]") {
+TEST_CASE("surface: new rays start further from a surface that is flat for its cell", "[path]") {
   const auto scene = scene_of(R"_("objects": [{"type": "expression", "formula": "y - 0.5 * floor(x)",
       "half_size": [2, 2, 2]}])_");
   const Field field = make_field(scene);
@@ -95,7 +95,7 @@ TEST_CASE("surface: new rays start further from a surface that is flat for its c
   CHECK(rows.offset[3] == rows.offset[0]);
 }
 
-TEST_CASE("surface: new rays start clear of the surface, on the side asked for", "[runtime]") {
+TEST_CASE("surface: new rays start clear of the surface, on the side asked for", "[path]") {
   const auto scene = scene_of(R"("objects": [{"type": "sphere", "radius": 1}])");
   const Hit hit{{0, 1, 0}, {0, 1, 0}, 1, 1e-7f};
   const SurfacePoint point = find(scene, hit);
@@ -106,7 +106,7 @@ TEST_CASE("surface: new rays start clear of the surface, on the side asked for",
 }
 
 // A ray from a level surface once expected the slope of the normal, and nearly every first step was too long.
-TEST_CASE("surface: a ray expects the slope of the gradient", "[runtime]") {
+TEST_CASE("surface: a ray expects the slope of the gradient", "[path]") {
   SurfacePoint point{};
   point.normal = {0, 1, 0};
   point.steepness = 0.25f;

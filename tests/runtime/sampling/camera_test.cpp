@@ -20,7 +20,7 @@ compiler::Camera facing_minus_z() {
   return camera;
 }
 
-TEST_CASE("camera: up is up and right is right", "[runtime]") {
+TEST_CASE("camera: up is up and right is right", "[sampling]") {
   const Camera camera(facing_minus_z(), 100, 50);
   CHECK(camera.ray(50, 0).direction.y > 0.1);
   CHECK(camera.ray(50, 50).direction.y < -0.1);
@@ -29,7 +29,7 @@ TEST_CASE("camera: up is up and right is right", "[runtime]") {
   CHECK(camera.ray(50, 25).direction.z == Approx(-1));
 }
 
-TEST_CASE("camera: fov is the horizontal angle, fov_y the vertical one", "[runtime]") {
+TEST_CASE("camera: fov is the horizontal angle, fov_y the vertical one", "[sampling]") {
   const Camera wide(facing_minus_z(), 200, 100);
   const glm::dvec3 right = wide.ray(200, 50).direction, top = wide.ray(100, 0).direction;
   CHECK(right.x / -right.z == Approx(1));
@@ -42,7 +42,7 @@ TEST_CASE("camera: fov is the horizontal angle, fov_y the vertical one", "[runti
   CHECK(tall.ray(200, 50).direction.x / -tall.ray(200, 50).direction.z == Approx(2));
 }
 
-TEST_CASE("camera: orthographic rays are parallel and as far apart as the width says", "[runtime]") {
+TEST_CASE("camera: orthographic rays are parallel and as far apart as the width says", "[sampling]") {
   compiler::Camera flat = facing_minus_z();
   flat.projection = compiler::Camera::Projection::Orthographic;
   flat.width = 6;
@@ -52,7 +52,7 @@ TEST_CASE("camera: orthographic rays are parallel and as far apart as the width 
   CHECK(camera.ray(0, 0).direction == camera.ray(300, 100).direction);
 }
 
-TEST_CASE("camera: looking along `up` still gives a picture", "[runtime]") {
+TEST_CASE("camera: looking along `up` still gives a picture", "[sampling]") {
   compiler::Camera down = facing_minus_z();
   down.position = {0, 5, 0};
   const Camera camera(down, 10, 10);
@@ -72,7 +72,7 @@ compiler::Camera with_lens(double radius, double focus) {
 
 glm::dvec3 forward_of(const compiler::Camera& camera) { return glm::normalize(camera.target - camera.position); }
 
-TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "[runtime]") {
+TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "[sampling]") {
   const Camera camera(facing_minus_z(), 30, 20);
   CHECK(!camera.has_lens());
   const CameraRay plain = camera.ray(3.7, 11.2), lens = camera.ray(3.7, 11.2, {0.1f, 0.9f});
@@ -84,7 +84,7 @@ TEST_CASE("camera: without a lens rays are those of the pinhole, bit for bit", "
         glm::normalize(glm::dvec3(1, 0, 0) * sx + glm::dvec3(0, 1, 0) * sy + glm::dvec3(0, 0, -1)));
 }
 
-TEST_CASE("camera: directions in lanes are those of each ray, bit for bit", "[runtime]") {
+TEST_CASE("camera: directions in lanes are those of each ray, bit for bit", "[sampling]") {
   compiler::Camera settings = facing_minus_z();
   settings.position = {1.25, -3.5, 7.1};
   settings.target = {0.3, 0.2, -0.1};
@@ -104,7 +104,7 @@ TEST_CASE("camera: directions in lanes are those of each ray, bit for bit", "[ru
   }
 }
 
-TEST_CASE("camera: what lies in the focus plane is sharp", "[runtime]") {
+TEST_CASE("camera: what lies in the focus plane is sharp", "[sampling]") {
   const compiler::Camera spec = with_lens(0.2, 6);
   const Camera camera(spec, 60, 40);
   const glm::dvec3 forward = forward_of(spec);
@@ -125,7 +125,7 @@ TEST_CASE("camera: what lies in the focus plane is sharp", "[runtime]") {
 
 // Thin lens: a point at distance d has a circle of confusion of width c = 2 R f |d - F| / (d (F - f)) on the sensor.
 // The sensor is at distance v behind the lens with 1/f = 1/v + 1/F, and has the width 2 v tan(fov/2).
-TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]") {
+TEST_CASE("camera: the circle of confusion is that of the thin lens", "[sampling]") {
   const double radius = 0.03, focus = 4, f = 0.05, v = 1 / (1 / f - 1 / focus);
   compiler::Camera spec = with_lens(radius, focus);
   const Camera camera(spec, 1000, 800);
@@ -155,7 +155,7 @@ TEST_CASE("camera: the circle of confusion is that of the thin lens", "[runtime]
   }
 }
 
-TEST_CASE("camera: focal length and f-stop say what a lens of that name does", "[runtime]") {
+TEST_CASE("camera: focal length and f-stop say what a lens of that name does", "[sampling]") {
   compiler::Camera spec = facing_minus_z();
   spec.focal_length = 50;
   spec.f_stop = 2;
@@ -179,7 +179,7 @@ double chi_square(const std::vector<int>& counts, double expected) {
   return sum;
 }
 
-TEST_CASE("camera: a round lens is lit evenly", "[runtime]") {
+TEST_CASE("camera: a round lens is lit evenly", "[sampling]") {
   const Camera camera(with_lens(2, 5), 10, 10);
   // 16 x 16 cells: rings and sectors of equal area.
   std::vector<int> counts(256);
@@ -195,7 +195,7 @@ TEST_CASE("camera: a round lens is lit evenly", "[runtime]") {
   CHECK(chi_square(counts, n / 256.0) < 255 + 4 * std::sqrt(510.0));
 }
 
-TEST_CASE("camera: blades make a regular polygon, lit evenly", "[runtime]") {
+TEST_CASE("camera: blades make a regular polygon, lit evenly", "[sampling]") {
   for (const int blades : {3, 5, 6, 9}) {
     compiler::Camera spec = with_lens(1, 5);
     spec.blades = blades;
@@ -232,7 +232,7 @@ TEST_CASE("camera: blades make a regular polygon, lit evenly", "[runtime]") {
   }
 }
 
-TEST_CASE("camera: a panorama shows all directions, level, the target in its middle", "[runtime]") {
+TEST_CASE("camera: a panorama shows all directions, level, the target in its middle", "[sampling]") {
   compiler::Camera spec = facing_minus_z();
   spec.projection = compiler::Camera::Projection::Panorama;
   spec.target = {0, -3, 0};  // below the camera: the horizon stays level

@@ -26,7 +26,7 @@ double integral(FilterKind kind, double a, double b, double radius, const Functi
   return sum * (b - a) / steps / 3;
 }
 
-TEST_CASE("filter: the shapes are those of the books") {
+TEST_CASE("filter: the shapes are those of the books", "[sampling]") {
   CHECK(filter_value(FilterKind::Gaussian, 1) == Approx(0).margin(1e-6));
   // The standard deviation is a third of the radius.
   CHECK(filter_value(FilterKind::Gaussian, 1.0 / 3) == Approx(std::exp(-0.5) - std::exp(-4.5)).epsilon(1e-5));
@@ -47,7 +47,7 @@ TEST_CASE("filter: the shapes are those of the books") {
   }
 }
 
-TEST_CASE("filter: the box of one pixel takes the numbers as they are, bit for bit") {
+TEST_CASE("filter: the box of one pixel takes the numbers as they are, bit for bit", "[sampling]") {
   const Filter box;
   Sampler sampler(1, 2, 3, 4);
   for (int i = 0; i < 100000; ++i) {
@@ -57,7 +57,7 @@ TEST_CASE("filter: the box of one pixel takes the numbers as they are, bit for b
   }
 }
 
-TEST_CASE("filter: offsets are as dense as the filter's magnitude says") {
+TEST_CASE("filter: offsets are as dense as the filter's magnitude says", "[sampling]") {
   for (const FilterKind kind : kFilters) {
     for (const double width : {0.0, 1.7}) {
       const Filter filter = width > 0 ? Filter(kind, width) : Filter(kind);
@@ -116,7 +116,7 @@ std::array<double, 3> moments(const Filter& filter, int axis) {
   return sums;
 }
 
-TEST_CASE("filter: a constant stays, a ramp stays, a parabola gains the filter's second moment") {
+TEST_CASE("filter: a constant stays, a ramp stays, a parabola gains the filter's second moment", "[sampling]") {
   for (const FilterKind kind : kFilters) {
     const Filter filter(kind);
     const double radius = filter.radius();
@@ -132,7 +132,8 @@ TEST_CASE("filter: a constant stays, a ramp stays, a parabola gains the filter's
   }
 }
 
-TEST_CASE("filter: only the Mitchell filter has negative weights, and all weights of one are of one size") {
+TEST_CASE("filter: only the Mitchell filter has negative weights, and all weights of one are of one size",
+          "[sampling]") {
   for (const FilterKind kind : kFilters) {
     const Filter filter(kind);
     Sampler sampler(6, 0, 0, 0);
@@ -148,7 +149,7 @@ TEST_CASE("filter: only the Mitchell filter has negative weights, and all weight
   }
 }
 
-TEST_CASE("filter: samples in order of u are in order in the picture") {
+TEST_CASE("filter: samples in order of u are in order in the picture", "[sampling]") {
   for (const FilterKind kind : kFilters) {
     const Filter filter(kind);
     float before = -100;

@@ -11,7 +11,7 @@
 namespace fathom::runtime::sphere_table_test {
 namespace {
 
-TEST_CASE("sphere table: longitude and latitude there and back", "[lights]") {
+TEST_CASE("sphere table: longitude and latitude there and back", "[sampling][light]") {
   CHECK(glm::length(from_latlong({0.5, 0.5}) - glm::dvec3(0, 0, -1)) < 1e-15);
   CHECK(glm::length(from_latlong({0.75, 0.5}) - glm::dvec3(1, 0, 0)) < 1e-15);
   CHECK(glm::length(from_latlong({0.2, 0}) - glm::dvec3(0, 1, 0)) < 1e-15);
@@ -24,7 +24,7 @@ TEST_CASE("sphere table: longitude and latitude there and back", "[lights]") {
   }
 }
 
-TEST_CASE("sphere table: a single cell takes every sample", "[lights]") {
+TEST_CASE("sphere table: a single cell takes every sample", "[sampling][light]") {
   std::vector<float> values(8 * 4, 0.0f);
   values[8 * 1 + 5] = 3;
   const PiecewiseConstantSphere table(8, 4, values);
@@ -41,7 +41,7 @@ TEST_CASE("sphere table: a single cell takes every sample", "[lights]") {
   CHECK(PiecewiseConstantSphere(8, 4, std::vector<float>(32, 0.0f)).mean() == 0);
 }
 
-TEST_CASE("sphere table: equal values are equal densities", "[lights]") {
+TEST_CASE("sphere table: equal values are equal densities", "[sampling][light]") {
   const PiecewiseConstantSphere table(16, 8, std::vector<float>(128, 0.7f));
   CHECK(table.mean() == Approx(0.7));
   for (double v = 0.01; v < 1; v += 0.1)

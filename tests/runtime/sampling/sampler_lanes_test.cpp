@@ -58,7 +58,7 @@ int count_differences(Samplers& samplers) {
   return differences;
 }
 
-TEST_CASE("sampler lanes: the numbers are those of each sampler", "[runtime]") {
+TEST_CASE("sampler lanes: the numbers are those of each sampler", "[sampling]") {
   std::mt19937 random(1);
   const int rounds = test::scaled_cases(80);
   for (const SamplerKind kind : {SamplerKind::Blue, SamplerKind::Sobol, SamplerKind::Independent}) {
@@ -75,7 +75,7 @@ TEST_CASE("sampler lanes: the numbers are those of each sampler", "[runtime]") {
   }
 }
 
-TEST_CASE("sampler lanes: numbers drawn and not taken are drawn again", "[runtime]") {
+TEST_CASE("sampler lanes: numbers drawn and not taken are drawn again", "[sampling]") {
   std::mt19937 random(2);
   Samplers samplers = random_samplers({SamplerKind::Blue, 3, 16}, 20, random);
   float u[SamplerRows::kCapacity], again[SamplerRows::kCapacity], next[SamplerRows::kCapacity];

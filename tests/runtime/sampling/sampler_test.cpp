@@ -12,12 +12,12 @@
 namespace fathom::runtime::sampler_test {
 namespace {
 
-TEST_CASE("sampler: a function of its key alone", "[runtime]") {
+TEST_CASE("sampler: a function of its key alone", "[sampling]") {
   Sampler first(7, 3, 4, 5), again(7, 3, 4, 5);
   for (int i = 0; i < 100; ++i) CHECK(first.next() == again.next());
 }
 
-TEST_CASE("sampler: every part of the key matters", "[runtime]") {
+TEST_CASE("sampler: every part of the key matters", "[sampling]") {
   std::set<float> seen;
   for (Sampler s : {Sampler(0, 0, 0, 0), Sampler(1, 0, 0, 0), Sampler(0, 1, 0, 0), Sampler(0, 0, 1, 0),
                     Sampler(0, 0, 0, 1), Sampler(1ull << 63, 0, 0, 0)}) {
@@ -33,7 +33,7 @@ double chi_square(const std::vector<int>& counts, double expected) {
   return sum;
 }
 
-TEST_CASE("sampler: pairs are even, over dimensions and over neighbouring pixels", "[runtime]") {
+TEST_CASE("sampler: pairs are even, over dimensions and over neighbouring pixels", "[sampling]") {
   const int n = 1 << 18;
   std::vector<int> along(256), across(256), samples(256);
   for (int i = 0; i < n; ++i) {
@@ -53,7 +53,7 @@ TEST_CASE("sampler: pairs are even, over dimensions and over neighbouring pixels
   CHECK(chi_square(samples, n / 256.0) < limit);
 }
 
-TEST_CASE("sampler: numbers lie from 0 up to, but not at, 1", "[runtime]") {
+TEST_CASE("sampler: numbers lie from 0 up to, but not at, 1", "[sampling]") {
   Sampler sampler(1, 2, 3, 4);
   for (int i = 0; i < 1 << 20; ++i) {
     const float u = sampler.next();
@@ -69,7 +69,7 @@ glm::vec2 pair_of(const SamplePlan& plan, std::uint32_t x, std::uint32_t y, std:
   return sampler.next2();
 }
 
-TEST_CASE("sampler: asked again in another order the numbers are the same, of every kind") {
+TEST_CASE("sampler: asked again in another order the numbers are the same, of every kind", "[sampling]") {
   for (const SamplerKind kind : kKinds) {
     const SamplePlan plan{kind, 11, 9};
     std::vector<glm::vec2> there, back;
@@ -87,7 +87,7 @@ TEST_CASE("sampler: asked again in another order the numbers are the same, of ev
   }
 }
 
-TEST_CASE("sampler: what a bounce draws does not depend on what was drawn before it") {
+TEST_CASE("sampler: what a bounce draws does not depend on what was drawn before it", "[sampling]") {
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     const PixelKey pixel({kind, 1, 16}, 3, 4);
     Sampler busy(pixel, 5), idle(pixel, 5);
@@ -124,7 +124,7 @@ bool is_net(const std::vector<glm::vec2>& points, int bits) {
   return true;
 }
 
-TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair of dimensions") {
+TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair of dimensions", "[sampling]") {
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     for (int bits = 0; bits <= 12; ++bits) {
       const int count = 1 << bits;
@@ -152,7 +152,7 @@ TEST_CASE("sampler: each run of 2^k samples of a pixel is a net, in every pair o
 }
 
 // The pixels of an aligned square of 2^k per side together have the samples of one run.
-TEST_CASE("sampler: of the kind blue aligned squares of pixels are nets, too") {
+TEST_CASE("sampler: of the kind blue aligned squares of pixels are nets, too", "[sampling]") {
   for (const int spp : {1, 2, 4, 16}) {
     for (int level = 1; level <= 3; ++level) {
       for (const int bounce : {-1, 2}) {
@@ -172,7 +172,7 @@ TEST_CASE("sampler: of the kind blue aligned squares of pixels are nets, too") {
   }
 }
 
-TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixels and pairs") {
+TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixels and pairs", "[sampling]") {
   const int n = fathom::test::scaled_cases(1 << 16);
   const double limit = 255 + 4 * std::sqrt(510.0);
   for (const SamplerKind kind : kKinds) {
@@ -200,7 +200,8 @@ TEST_CASE("sampler: one sample is anywhere, whatever the kind, over seeds, pixel
   }
 }
 
-TEST_CASE("sampler: more samples than were planned are still all different, and pixels at the far end, too") {
+TEST_CASE("sampler: more samples than were planned are still all different, and pixels at the far end, too",
+          "[sampling]") {
   for (const SamplerKind kind : kKinds) {
     std::set<std::uint64_t> seen;
     for (const std::uint32_t place : {0u, 65534u}) {

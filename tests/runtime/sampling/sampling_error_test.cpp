@@ -15,14 +15,15 @@ double slope(SamplerKind kind, int integrand, int bounce) {
   return test::error_slope(test::sampling_errors(kind, f, kPowersOfTwo, 160, bounce));
 }
 
-TEST_CASE("sampling error: independent samples err with the root of their number") {
+TEST_CASE("sampling error: independent samples err with the root of their number", "[sampling]") {
   for (int f = 0; f < 3; ++f) {
     CAPTURE(f);
     CHECK(slope(SamplerKind::Independent, f, -1) == Approx(-0.5).margin(0.05));
   }
 }
 
-TEST_CASE("sampling error: Sobol's points err much less the more there are, in every pair of dimensions") {
+TEST_CASE("sampling error: Sobol's points err much less the more there are, in every pair of dimensions",
+          "[sampling]") {
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     for (const int bounce : {-1, 7}) {
       CAPTURE(kind, bounce);
@@ -33,7 +34,7 @@ TEST_CASE("sampling error: Sobol's points err much less the more there are, in e
   }
 }
 
-TEST_CASE("sampling error: numbers of samples that are no powers of two are good, too") {
+TEST_CASE("sampling error: numbers of samples that are no powers of two are good, too", "[sampling]") {
   constexpr std::array<int, 6> kCounts = {12, 24, 48, 100, 200, 400};
   for (const SamplerKind kind : {SamplerKind::Sobol, SamplerKind::Blue}) {
     for (const test::SquareIntegrand& f : test::square_integrands()) {
@@ -48,7 +49,7 @@ TEST_CASE("sampling error: numbers of samples that are no powers of two are good
   }
 }
 
-TEST_CASE("sampling error: of the kind blue little is left where pixels are seen together") {
+TEST_CASE("sampling error: of the kind blue little is left where pixels are seen together", "[sampling]") {
   const int side = 64, seeds = 8;
   for (const test::SquareIntegrand& f : test::square_integrands()) {
     for (const int spp : {1, 2, 4, 16}) {
@@ -63,7 +64,7 @@ TEST_CASE("sampling error: of the kind blue little is left where pixels are seen
 }
 
 // This shows that `blue` costs nothing for single pixels and can be the default.
-TEST_CASE("sampling error: a pixel by itself errs with the kind blue as with sobol") {
+TEST_CASE("sampling error: a pixel by itself errs with the kind blue as with sobol", "[sampling]") {
   constexpr std::array<int, 5> kCounts = {1, 2, 4, 8, 16};
   for (const test::SquareIntegrand& f : test::square_integrands()) {
     for (const int count : kCounts) {

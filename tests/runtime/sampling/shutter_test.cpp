@@ -10,7 +10,7 @@ namespace {
 
 using namespace fathom::runtime;
 
-TEST_CASE("shutter: frame 0 has the seed itself, and no two frames the same") {
+TEST_CASE("shutter: frame 0 has the seed itself, and no two frames the same", "[sampling]") {
   CHECK(frame_seed(7, 0) == 7);
   std::set<std::uint64_t> seeds;
   for (const std::uint64_t seed : {0ull, 1ull, 2ull, 1ull << 63}) {
@@ -18,7 +18,7 @@ TEST_CASE("shutter: frame 0 has the seed itself, and no two frames the same") {
   }
 }
 
-TEST_CASE("shutter: runs are even, cover all samples, and see moments within their share of the time") {
+TEST_CASE("shutter: runs are even, cover all samples, and see moments within their share of the time", "[sampling]") {
   for (const int spp : {1, 2, 3, 4, 16, 31, 100, 4096}) {
     for (const int times : {1, 2, 3, 16, 1 << 20}) {
       INFO(spp << " samples, " << times << " times");
@@ -40,7 +40,7 @@ TEST_CASE("shutter: runs are even, cover all samples, and see moments within the
   }
 }
 
-TEST_CASE("shutter: runs are as long as each other where they can be") {
+TEST_CASE("shutter: runs are as long as each other where they can be", "[sampling]") {
   for (const ShutterInterval& run : shutter_intervals(64, 16, 0, 0)) CHECK(run.samples.size() == 4);
   for (const ShutterInterval& run : shutter_intervals(100, 16, 0, 0))
     CHECK((run.samples.size() == 6 || run.samples.size() == 8));
@@ -48,7 +48,7 @@ TEST_CASE("shutter: runs are as long as each other where they can be") {
 
 // The mean of n uniform numbers in [0,1) has the standard deviation 1/sqrt(12 n). A deviation of five times this
 // occurs once in 1.7 million.
-TEST_CASE("shutter: moments are even in their share, and differ by seed, frame and run") {
+TEST_CASE("shutter: moments are even in their share, and differ by seed, frame and run", "[sampling]") {
   std::set<double> times;
   double sum = 0;
   int count = 0;

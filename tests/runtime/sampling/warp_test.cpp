@@ -9,7 +9,7 @@
 namespace fathom::runtime::warp_test {
 namespace {
 
-TEST_CASE("warp: cosine hemisphere passes a chi-square test against its density", "[runtime]") {
+TEST_CASE("warp: cosine hemisphere passes a chi-square test against its density", "[sampling]") {
   // Cells of equal cos^2 and equal angle are equally likely: cos^2 theta is uniform for the density cos/pi.
   const int n = 1000000, rows = 20, columns = 40;
   std::vector<int> counts(rows * columns);
@@ -27,7 +27,7 @@ TEST_CASE("warp: cosine hemisphere passes a chi-square test against its density"
   CHECK(sum < freedom + 4 * std::sqrt(2 * freedom));
 }
 
-TEST_CASE("warp: the cosine density integrates to one", "[runtime]") {
+TEST_CASE("warp: the cosine density integrates to one", "[sampling]") {
   double sum = 0;
   const int n = 1000;
   for (int i = 0; i < n; ++i) {
@@ -38,7 +38,7 @@ TEST_CASE("warp: the cosine density integrates to one", "[runtime]") {
   CHECK(square_to_cosine_hemisphere_pdf({0, 0, -1}) == 0);
 }
 
-TEST_CASE("warp: frames are orthonormal for every direction", "[runtime]") {
+TEST_CASE("warp: frames are orthonormal for every direction", "[sampling]") {
   Sampler sampler(2, 0, 0, 0);
   std::vector<glm::vec3> normals = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, -0.0f}, {-1, 0, 0}};
   normals[4] = {0, -1, -0.0f};

@@ -35,7 +35,7 @@ void refused(const std::string& text, const std::string& at, const std::string& 
 
 }  // namespace
 
-TEST_CASE("random programs read back from their listings", "[assemble]") {
+TEST_CASE("random programs read back from their listings", "[encoding][assemble]") {
   const int count = scaled_cases(10000);
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -50,7 +50,7 @@ TEST_CASE("random programs read back from their listings", "[assemble]") {
   }
 }
 
-TEST_CASE("a program may be written without any of the listing's columns", "[assemble]") {
+TEST_CASE("a program may be written without any of the listing's columns", "[encoding][assemble]") {
   const vm::Program program = assembled(
       "; two balls\r\n\n"
       "locals 1\n"
@@ -70,7 +70,7 @@ TEST_CASE("a program may be written without any of the listing's columns", "[ass
   CHECK(same_program(program, expected));
 }
 
-TEST_CASE("what is no program is refused where it goes wrong", "[assemble]") {
+TEST_CASE("what is no program is refused where it goes wrong", "[encoding][assemble]") {
   refused("spher 1\n", "spher", "no instruction is called `spher`");
   refused("sphere\n", "sphere", "`sphere` takes 1 numbers (radius), not 0");
   refused("sphere 1 2\n", "sphere", "not 2");
@@ -108,7 +108,7 @@ TEST_CASE("what is no program is refused where it goes wrong", "[assemble]") {
   refused("sphere 1 @6:5 b\\x\n", "b\\x", "backslash");
 }
 
-TEST_CASE("escaped texts lie on one line and read back", "[assemble]") {
+TEST_CASE("escaped texts lie on one line and read back", "[encoding][assemble]") {
   for (const std::string& text : {std::string("plain"), std::string("a\nb\tc\rd\\e\"f"), std::string("\0\x1f", 2),
                                   std::string("ä"), std::string("\xC2\x80\xC2\x9F\xC2\xA0\xC2")}) {
     std::string back;

@@ -32,7 +32,7 @@ vm::VerifiedProgram program_of(Random& random, int seed) { return random_program
 
 }  // namespace
 
-TEST_CASE("random programs read back from their bytes", "[binary]") {
+TEST_CASE("random programs read back from their bytes", "[encoding][binary]") {
   const int count = scaled_cases(10000);
   for (int seed = 0; seed < count; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -56,7 +56,7 @@ TEST_CASE("random programs read back from their bytes", "[binary]") {
 }
 
 TEST_CASE("of a program's bytes every cut is refused, and every changed byte is refused or another sound program",
-          "[binary]") {
+          "[encoding][binary]") {
   vm::Workspace workspace;
   for (int seed = 0; seed < scaled_cases(40); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -78,7 +78,7 @@ TEST_CASE("of a program's bytes every cut is refused, and every changed byte is 
   }
 }
 
-TEST_CASE("what the bytes declare must be what the code is", "[binary]") {
+TEST_CASE("what the bytes declare must be what the code is", "[encoding][binary]") {
   vm::Program program;
   program.append(vm::Opcode::Sphere, 0, {0.1}, {});
   const auto verified = vm::verify(program);
@@ -100,7 +100,7 @@ TEST_CASE("what the bytes declare must be what the code is", "[binary]") {
 // Compiled files record the version of the machine that their programs are for. If this test fails, some opcode
 // computes something else than before: increment kMachine in vm/encoding/binary.cpp, so that files of the old machine
 // are refused, and put the new digest here.
-TEST_CASE("the machine is the one whose number files carry", "[binary]") {
+TEST_CASE("the machine is the one whose number files carry", "[encoding][binary]") {
   vm::Workspace workspace;
   vm::ByteWriter values;
   for (std::uint32_t i = 0; i < vm::kOpcodeCount; ++i) {

@@ -10,7 +10,7 @@
 
 namespace fathom::test::bytes_test {
 
-TEST_CASE("what is written as bytes is read back", "[bytes]") {
+TEST_CASE("what is written as bytes is read back", "[encoding][bytes]") {
   vm::ByteWriter out;
   out.u8(250);
   out.u32(0x01020304);
@@ -32,7 +32,7 @@ TEST_CASE("what is written as bytes is read back", "[bytes]") {
   CHECK_FALSE(in.failed());
 }
 
-TEST_CASE("a reader never leaves its bytes", "[bytes]") {
+TEST_CASE("a reader never leaves its bytes", "[encoding][bytes]") {
   vm::ByteWriter out;
   out.u32(5);
   out.u32(6);
@@ -67,7 +67,7 @@ TEST_CASE("a reader never leaves its bytes", "[bytes]") {
   }
 }
 
-TEST_CASE("digests are those of XXH3", "[bytes]") {
+TEST_CASE("digests are those of XXH3", "[encoding][bytes]") {
   // Digest of the empty string, from the reference implementation's xxhsum -H2.
   CHECK(vm::digest(std::string_view()).text() == "99aa06d3014798d86001c324468d497f");
   CHECK(vm::digest("ball") == vm::digest("ball"));

@@ -4,13 +4,13 @@
 
 namespace fathom::vm::printable_test {
 
-TEST_CASE("printable: what is text stays, and line breaks", "[vm]") {
+TEST_CASE("printable: what is text stays, and line breaks", "[encoding]") {
   for (const char* text : {"", "a ball\nof \u00E9, \u20AC and \U0001F600", "\u00A0", "\uFFFD"}) {
     CHECK(printable(text) == text);
   }
 }
 
-TEST_CASE("printable: neither commands to a terminal nor bytes that are no text come through", "[vm]") {
+TEST_CASE("printable: neither commands to a terminal nor bytes that are no text come through", "[encoding]") {
   CHECK(printable("\x1b[31mred\x7f\t") == "\uFFFD[31mred\uFFFD\uFFFD");
   CHECK(printable("\u009b31m") == "\uFFFD\uFFFD31m");
   CHECK(printable("\xff\x80 \xe2\x82") == "\uFFFD\uFFFD \uFFFD\uFFFD");
@@ -18,7 +18,7 @@ TEST_CASE("printable: neither commands to a terminal nor bytes that are no text 
 }
 
 // Regression: overlong forms and surrogates passed through, although no UTF-8 decoder accepts them.
-TEST_CASE("printable: what comes through is UTF-8", "[vm]") {
+TEST_CASE("printable: what comes through is UTF-8", "[encoding]") {
   CHECK(printable("\xc0\x80 \xc1\xbf") == "\uFFFD\uFFFD \uFFFD\uFFFD");
   CHECK(printable("\xe0\x9f\xbf") == "\uFFFD\uFFFD\uFFFD");
   CHECK(printable("\xed\xa0\x80") == "\uFFFD\uFFFD\uFFFD");
@@ -27,7 +27,7 @@ TEST_CASE("printable: what comes through is UTF-8", "[vm]") {
   for (const char* text : {"\u0800", "\ud7ff", "\ue000", "\U00010000", "\U0010ffff"}) CHECK(printable(text) == text);
 }
 
-TEST_CASE("printable: data keep their controls as JSON writes them", "[vm]") {
+TEST_CASE("printable: data keep their controls as JSON writes them", "[encoding]") {
   CHECK(escape_controls("a\tb\n\u009b31m \x1b\x7f \u00e9") == "a\tb\n\\u009b31m \\u001b\\u007f \u00e9");
   CHECK(escape_controls("\xff\xc0\x80") == "\uFFFD\uFFFD\uFFFD");
 }

@@ -78,7 +78,7 @@ std::vector<compiler::Scene> scenes(int graphs) {
 
 }  // namespace
 
-TEST_CASE("one point at a time or many, on any instruction set: the same bits", "[evaluate][isa]") {
+TEST_CASE("one point at a time or many, on any instruction set: the same bits", "[interpret][evaluate][isa]") {
   const IsaGuard guard;
   vm::Workspace workspace;
   constexpr std::size_t kPoints = 300;
@@ -110,7 +110,7 @@ TEST_CASE("one point at a time or many, on any instruction set: the same bits", 
   }
 }
 
-TEST_CASE("the surface's distance is the distance, bit for bit", "[evaluate]") {
+TEST_CASE("the surface's distance is the distance, bit for bit", "[interpret][evaluate]") {
   vm::Workspace workspace;
   const auto all = scenes(60);
   for (std::size_t n = 0; n < all.size(); ++n) {
@@ -137,7 +137,7 @@ TEST_CASE("the surface's distance is the distance, bit for bit", "[evaluate]") {
   }
 }
 
-TEST_CASE("a NaN point leaves its neighbours alone", "[evaluate]") {
+TEST_CASE("a NaN point leaves its neighbours alone", "[interpret][evaluate]") {
   vm::Workspace workspace;
   constexpr std::size_t kPoints = 70;
   const auto all = scenes(10);
@@ -162,14 +162,14 @@ TEST_CASE("a NaN point leaves its neighbours alone", "[evaluate]") {
   }
 }
 
-TEST_CASE("no points: nothing is written", "[evaluate]") {
+TEST_CASE("no points: nothing is written", "[interpret][evaluate]") {
   vm::Workspace workspace;
   float untouched = 42;
   vm::evaluate_distance(primitive_program(Kind::Sphere, {1}), {nullptr, nullptr, nullptr}, 0, &untouched, workspace);
   CHECK(untouched == 42);
 }
 
-TEST_CASE("an unknown instruction set is refused", "[evaluate][isa]") {
+TEST_CASE("an unknown instruction set is refused", "[interpret][evaluate][isa]") {
   const IsaGuard guard;
   CHECK_FALSE(vm::force_isa("z80"));
   CHECK(vm::isa_name() == guard.before);
@@ -228,7 +228,7 @@ long check_ranges(std::uint64_t first_seed, std::uint64_t count, int points, Jud
 
 }  // namespace
 
-TEST_CASE("ranges contain every value in their box", "[evaluate][range]") {
+TEST_CASE("ranges contain every value in their box", "[interpret][evaluate][range]") {
   CHECK(check_ranges(0, scaled_cases(500), 30, Judged::Yes) >= scaled_cases(300000));
 }
 
@@ -236,7 +236,7 @@ TEST_CASE("ranges contain every one of a hundred million values in their boxes",
   CHECK(check_ranges(1700, 50000, 100, Judged::No) >= 100000000);
 }
 
-TEST_CASE("ranges of small boxes are narrow", "[evaluate][range]") {
+TEST_CASE("ranges of small boxes are narrow", "[interpret][evaluate][range]") {
   vm::Workspace workspace;
   int boxes = 0, narrow = 0;
   for (int seed = 0; seed < scaled_cases(500); ++seed) {
@@ -252,7 +252,7 @@ TEST_CASE("ranges of small boxes are narrow", "[evaluate][range]") {
   CHECK(narrow >= 0.98 * boxes);
 }
 
-TEST_CASE("ranges of unbounded boxes are ranges", "[evaluate][range]") {
+TEST_CASE("ranges of unbounded boxes are ranges", "[interpret][evaluate][range]") {
   vm::Workspace workspace;
   const double inf = std::numeric_limits<double>::infinity();
   const auto all = scenes(30);
@@ -268,7 +268,7 @@ TEST_CASE("ranges of unbounded boxes are ranges", "[evaluate][range]") {
   }
 }
 
-TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][surface]") {
+TEST_CASE("the surface is the one the judge names, away from ties", "[interpret][evaluate][surface]") {
   vm::Workspace workspace;
   int named = 0;
   for (int seed = 0; seed < scaled_cases(300); ++seed) {
@@ -294,7 +294,7 @@ TEST_CASE("the surface is the one the judge names, away from ties", "[evaluate][
 
 // Regression: a Mandelbulb's point exactly at the bailout went on iterating when a neighbouring lane did, and
 // overflowing derivatives became NaN.
-TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[evaluate]") {
+TEST_CASE("a Mandelbulb's points do not disturb each other, and have finite gradients", "[interpret][evaluate]") {
   const IsaGuard guard;
   compiler::Scene scene;
   scene.root = scene.graph.add(compiler::Kind::Mandelbulb, std::vector<double>{8, 256, 4, 0.001}, {});

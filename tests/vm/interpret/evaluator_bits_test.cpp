@@ -12,7 +12,7 @@ namespace fathom::test::evaluator_bits_test {
 
 // The compiler's changes of shipped scenes' programs change the digests, and a change without one of the first digest
 // is a change of the evaluators.
-TEST_CASE("evaluators: the same bits on every processor", "[isa]") {
+TEST_CASE("evaluators: the same bits on every processor", "[interpret][isa]") {
   const std::filesystem::path path = std::filesystem::path(FATHOM_SOURCE_DIR) / "tests/golden/evaluators/bits.txt";
   const std::string bits = evaluator_bits();
   if (std::getenv("FATHOM_UPDATE_GOLDEN") != nullptr) std::ofstream(path, std::ios::binary) << bits;

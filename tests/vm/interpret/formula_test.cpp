@@ -89,7 +89,7 @@ BoundCounts check_random_bounds(const Append& append) {
 
 }  // namespace
 
-TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa]") {
+TEST_CASE("formulas have the same bits on every instruction set", "[interpret][formula][isa]") {
   const IsaGuard guard;
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -124,7 +124,7 @@ TEST_CASE("formulas have the same bits on every instruction set", "[formula][isa
   }
 }
 
-TEST_CASE("ranges of formulas contain their values", "[formula][range]") {
+TEST_CASE("ranges of formulas contain their values", "[interpret][formula][range]") {
   vm::Workspace workspace;
   int finite = 0, boxes = 0;
   for (int seed = 0; seed < scaled_cases(20000); ++seed) {
@@ -152,7 +152,7 @@ TEST_CASE("ranges of formulas contain their values", "[formula][range]") {
   CHECK(finite > boxes / 2);
 }
 
-TEST_CASE("gradients of formulas match differences", "[formula][gradient]") {
+TEST_CASE("gradients of formulas match differences", "[interpret][formula][gradient]") {
   vm::Workspace workspace;
   int compared = 0;
   for (std::uint64_t seed = 0; seed < 6000; ++seed) {
@@ -181,7 +181,7 @@ TEST_CASE("gradients of formulas match differences", "[formula][gradient]") {
   CHECK(compared > 5000);
 }
 
-TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]") {
+TEST_CASE("slope bounds hold: value, gradient, float error", "[interpret][formula][slope]") {
   BoundCounts counts;
   for (int seed = 0; seed < scaled_cases(20000); ++seed) check_slope_bounds(random_formula(seed), seed, counts);
   WARN(counts.lipschitz << " and " << counts.error << " of " << counts.boxes
@@ -190,24 +190,25 @@ TEST_CASE("slope bounds hold: value, gradient, float error", "[formula][slope]")
 }
 
 // The exponentials of such formulas underflow and overflow in float.
-TEST_CASE("bounds of sums of exponentials hold", "[formula][slope]") {
+TEST_CASE("bounds of sums of exponentials hold", "[interpret][formula][slope]") {
   const BoundCounts counts = check_random_bounds(
       [](Random& random, std::vector<Step>& steps) { append_exponentials(random, 1 + random.below(4), steps); });
   CHECK(counts.lipschitz > counts.boxes * 0.99);  // without one: exponentials that leave the range of double
   CHECK(counts.error > counts.boxes * 2 / 3);
 }
 
-TEST_CASE("bounds of smooth unions near poles hold", "[formula][slope]") {
+TEST_CASE("bounds of smooth unions near poles hold", "[interpret][formula][slope]") {
   const BoundCounts counts = check_random_bounds(append_pole);
   CHECK(counts.lipschitz > counts.boxes * 2 / 3);
 }
 
-TEST_CASE("bounds of repeated cells and sectors hold", "[formula][slope]") {
+TEST_CASE("bounds of repeated cells and sectors hold", "[interpret][formula][slope]") {
   const BoundCounts counts = check_random_bounds(append_cells);
   CHECK(counts.lipschitz > counts.boxes / 2);
 }
 
-TEST_CASE("repeated cells have a bound if they are equal on both sides of their border", "[formula][slope]") {
+TEST_CASE("repeated cells have a bound if they are equal on both sides of their border",
+          "[interpret][formula][slope]") {
   vm::Workspace workspace;
   const auto bound = [&](double period, double shift, Opcode even) {
     return vm::evaluate_slope(formula({{Opcode::X},
@@ -228,7 +229,8 @@ TEST_CASE("repeated cells have a bound if they are equal on both sides of their 
   CHECK(!std::isfinite(bound(0.9, 0.45, Opcode::Sin).lipschitz));
 }
 
-TEST_CASE("jumps that only seem to close, and numbers beyond those of float, have no bound", "[formula][slope]") {
+TEST_CASE("jumps that only seem to close, and numbers beyond those of float, have no bound",
+          "[interpret][formula][slope]") {
   vm::Workspace workspace;
   const auto bound = [&](double period, const std::vector<Step>& steps) {
     std::vector<Step> all = {{Opcode::X}, {Opcode::Constant, {period}}, {Opcode::Modulo}};
@@ -254,7 +256,8 @@ TEST_CASE("jumps that only seem to close, and numbers beyond those of float, hav
 }
 
 // The pole of 0.1 / x is a wall on both sides of which the quotient's part of the union vanishes.
-TEST_CASE("a smooth union has a bound where an operand is infinite, unless only on one side", "[formula][slope]") {
+TEST_CASE("a smooth union has a bound where an operand is infinite, unless only on one side",
+          "[interpret][formula][slope]") {
   vm::Workspace workspace;
   const auto bound = [&](std::vector<Step> quotient) {
     quotient.insert(quotient.begin(), {{Opcode::Constant, {0.1}}, {Opcode::X}, {Opcode::Divide}});
@@ -275,7 +278,7 @@ TEST_CASE("a smooth union has a bound where an operand is infinite, unless only 
   CHECK(!std::isfinite(bound({{Opcode::Abs}, {Opcode::Negate}}).lipschitz));
 }
 
-TEST_CASE("a smooth union by exponentials is no steeper than its operands", "[formula][slope]") {
+TEST_CASE("a smooth union by exponentials is no steeper than its operands", "[interpret][formula][slope]") {
   vm::Workspace workspace;
   for (const double k : {0.1, 11.0, 30.0, 300.0}) {
     // -ln(exp(-k x) + exp(-k y)) / k. Without bounds of the logarithm, the sum may be 0 and the slope has no bound.
@@ -298,7 +301,7 @@ TEST_CASE("a smooth union by exponentials is no steeper than its operands", "[fo
   }
 }
 
-TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") {
+TEST_CASE("the length of the point has slope 1 everywhere", "[interpret][formula][slope]") {
   vm::Workspace workspace;
   const auto program = formula({{Opcode::X},
                                 {Opcode::Square},
@@ -317,7 +320,8 @@ TEST_CASE("the length of the point has slope 1 everywhere", "[formula][slope]") 
   CHECK(away.float_error <= 64 * 0x1p-24);
 }
 
-TEST_CASE("an intersection at a right angle is no steeper than the operand that is above 0", "[formula][slope]") {
+TEST_CASE("an intersection at a right angle is no steeper than the operand that is above 0",
+          "[interpret][formula][slope]") {
   vm::Workspace workspace;
   // 3 x, met by a half-space that is 100 times as steep: alone 3 x counts where x > 0 > y, and both where x, y > 0.
   const auto program =
@@ -326,7 +330,7 @@ TEST_CASE("an intersection at a right angle is no steeper than the operand that 
   CHECK(vm::evaluate_slope(program, dvec3(-1), dvec3(1), workspace).lipschitz <= std::hypot(3, 300) * (1 + 1e-9));
 }
 
-TEST_CASE("a blend of what is not below 0 may be", "[formula][slope]") {
+TEST_CASE("a blend of what is not below 0 may be", "[interpret][formula][slope]") {
   vm::Workspace workspace;
   const double k = 0.5;
   // At x = y = 0 the blend of |x| and |y| is -k / 4, below the constant in the min that follows.

@@ -44,7 +44,7 @@ double error_of(const vm::SurfacePlace& found, const Verdict& verdict) {
 
 }  // namespace
 
-TEST_CASE("place: of random graphs it is the point at the innermost paint of what wins", "[vm][place]") {
+TEST_CASE("place: of random graphs it is the point at the innermost paint of what wins", "[interpret][place]") {
   vm::Workspace workspace;
   int moved = 0;
   for (int seed = 0; seed < scaled_cases(600); ++seed) {
@@ -70,7 +70,7 @@ TEST_CASE("place: of random graphs it is the point at the innermost paint of wha
   CHECK(moved > scaled_cases(600));
 }
 
-TEST_CASE("place: it is of the surface that the distance is of", "[vm][place]") {
+TEST_CASE("place: it is of the surface that the distance is of", "[interpret][place]") {
   vm::Workspace workspace;
   for (int seed = 0; seed < scaled_cases(300); ++seed) {
     const vm::VerifiedProgram program = surface_program(painted_scene(seed));
@@ -83,7 +83,7 @@ TEST_CASE("place: it is of the surface that the distance is of", "[vm][place]") 
   }
 }
 
-TEST_CASE("place: without tags it is the point", "[vm][place]") {
+TEST_CASE("place: without tags it is the point", "[interpret][place]") {
   vm::Workspace workspace;
   const auto scene = test::compiled_objects(R"({"type": "sphere", "radius": 1, "translate": [3, 0, 0]})");
   const vm::SurfacePlace found = vm::evaluate_place(scene.surface, {2, 1, 0}, workspace);
@@ -91,7 +91,7 @@ TEST_CASE("place: without tags it is the point", "[vm][place]") {
   CHECK(found.place == dvec3(2, 1, 0));
 }
 
-TEST_CASE("place: of two equal tags at one distance the first counts", "[vm][place]") {
+TEST_CASE("place: of two equal tags at one distance the first counts", "[interpret][place]") {
   vm::Workspace workspace;
   const auto scene = test::compiled(R"({"version": 1,
       "materials": {"m": {"type": "diffuse", "space": "object", "color": {"pattern": "checker", "a": 0, "b": 1}}},
@@ -101,7 +101,7 @@ TEST_CASE("place: of two equal tags at one distance the first counts", "[vm][pla
   CHECK(vm::evaluate_place(scene.surface, {0, 0, 0}, workspace).place == dvec3(2, 0, 0));
 }
 
-TEST_CASE("shares: two bodies of one surface have each its own share and place", "[vm][place]") {
+TEST_CASE("shares: two bodies of one surface have each its own share and place", "[interpret][place]") {
   vm::Workspace workspace;
   const auto scene = test::compiled(R"({"version": 1,
       "materials": {"m": {"type": "diffuse", "space": "object", "color": {"pattern": "checker", "a": 0, "b": 1}}},

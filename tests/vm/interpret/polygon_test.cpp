@@ -52,7 +52,7 @@ std::string refusal(vm::Program code) {
 
 }  // namespace
 
-TEST_CASE("a polygon is its exact distance, with a unit gradient", "[polygon]") {
+TEST_CASE("a polygon is its exact distance, with a unit gradient", "[interpret][polygon]") {
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     Random random(seed);
@@ -91,7 +91,7 @@ TEST_CASE("a polygon is its exact distance, with a unit gradient", "[polygon]") 
   }
 }
 
-TEST_CASE("a polygon in sheared space changes as fast as its points move", "[polygon][slope]") {
+TEST_CASE("a polygon in sheared space changes as fast as its points move", "[interpret][polygon][slope]") {
   vm::Workspace workspace;
   const std::vector<double> triangle = {1, 0, -1, 1, -1, -1};
   const double shears[] = {0.5, 1, -2};
@@ -113,7 +113,7 @@ TEST_CASE("a polygon in sheared space changes as fast as its points move", "[pol
   }
 }
 
-TEST_CASE("an outline has whole groups, enough of them, all finite", "[polygon][verify]") {
+TEST_CASE("an outline has whole groups, enough of them, all finite", "[interpret][polygon][verify]") {
   const std::vector<double> triangle = {0, 0, 1, 0, 0, 1};
   const vm::VerifiedProgram program = verified(polygon_code(triangle));
   CHECK(program.cost() == 3u * static_cast<unsigned>(vm::info(Opcode::Polygon).cost));

@@ -79,7 +79,7 @@ void check_bits(const vm::VerifiedProgram& program, std::uint64_t seed, std::siz
 
 }  // namespace
 
-TEST_CASE("in double, one point at a time or many: the same bits of every opcode", "[evaluate][isa]") {
+TEST_CASE("in double, one point at a time or many: the same bits of every opcode", "[interpret][evaluate][isa]") {
   const std::vector<EmittedProgram> programs = emitted_programs();
   for (std::size_t n = 0; n < programs.size(); ++n) {
     INFO(programs[n].name);
@@ -87,7 +87,7 @@ TEST_CASE("in double, one point at a time or many: the same bits of every opcode
   }
 }
 
-TEST_CASE("in double, one point at a time or many: the same bits of random formulas", "[evaluate][isa]") {
+TEST_CASE("in double, one point at a time or many: the same bits of random formulas", "[interpret][evaluate][isa]") {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     const std::vector<Step> steps = random_formula(seed);
     INFO(text_of(steps));
@@ -96,7 +96,7 @@ TEST_CASE("in double, one point at a time or many: the same bits of random formu
 }
 
 TEST_CASE("in double, one point at a time or many: the same bits of the scenes that come with Fathom",
-          "[evaluate][isa]") {
+          "[interpret][evaluate][isa]") {
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::string(FATHOM_SOURCE_DIR) + "/scenes")) {
     if (entry.path().extension() != ".json" || entry.path().stem() == "d10000") continue;

@@ -38,7 +38,7 @@ double share_of(const compiler::CompiledScene& scene, const char* material, glm:
   return share;
 }
 
-TEST_CASE("shares: along a smooth blend they are Quilez's mix factor", "[vm]") {
+TEST_CASE("shares: along a smooth blend they are Quilez's mix factor", "[interpret]") {
   const auto scene = blend_of(R"("type": "smooth_union", "k": 0.6)");
   CHECK(mixed(scene) == "110");
   for (double x = -1.5; x < 3; x += 0.0625) {
@@ -51,7 +51,7 @@ TEST_CASE("shares: along a smooth blend they are Quilez's mix factor", "[vm]") {
   }
 }
 
-TEST_CASE("shares: far from a blend, and in a plain union, one surface has all", "[vm]") {
+TEST_CASE("shares: far from a blend, and in a plain union, one surface has all", "[interpret]") {
   for (const char* combinator :
        {R"("type": "union")", R"("type": "smooth_union", "k": 0.2)", R"("type": "round_union", "radius": 0.1)",
         R"("type": "chamfer_union", "radius": 0.1)"}) {
@@ -63,7 +63,7 @@ TEST_CASE("shares: far from a blend, and in a plain union, one surface has all",
   CHECK(mixed(blend_of(R"("type": "union")")) == "000");
 }
 
-TEST_CASE("shares: what a blend mixes is known, also where a part has its material from above", "[vm]") {
+TEST_CASE("shares: what a blend mixes is known, also where a part has its material from above", "[interpret]") {
   const auto scene = test::compiled(R"({"version": 1,
       "materials": {"a": {"type": "diffuse"}, "b": {"type": "specular"}},
       "objects": [{"type": "smooth_union", "k": 0.5, "material": "a", "of": [{"type": "sphere", "radius": 1},
@@ -74,7 +74,7 @@ TEST_CASE("shares: what a blend mixes is known, also where a part has its materi
   CHECK(share_of(scene, "b", {0.75, 0.9, 0}) == Approx(0.5));
 }
 
-TEST_CASE("shares: halfway between two of one shape each has half, whatever joins them", "[vm]") {
+TEST_CASE("shares: halfway between two of one shape each has half, whatever joins them", "[interpret]") {
   for (const char* combinator : {R"("type": "smooth_union", "k": 0.5)", R"("type": "round_union", "radius": 0.5)",
                                  R"("type": "morph", "t": 0.5)"}) {
     INFO(combinator);
@@ -83,13 +83,13 @@ TEST_CASE("shares: halfway between two of one shape each has half, whatever join
   }
 }
 
-TEST_CASE("shares: a chamfer is of both, in equal parts", "[vm]") {
+TEST_CASE("shares: a chamfer is of both, in equal parts", "[interpret]") {
   const auto scene = blend_of(R"("type": "chamfer_union", "radius": 0.4)");
   CHECK(share_of(scene, "a", {0.74, 0.7, 0}) == Approx(0.5).epsilon(1e-9));
   CHECK(share_of(scene, "a", {0.76, 0.7, 0}) == Approx(0.5).epsilon(1e-9));
 }
 
-TEST_CASE("shares: a cut shows the material of what cuts", "[vm]") {
+TEST_CASE("shares: a cut shows the material of what cuts", "[interpret]") {
   const auto scene = blend_of(R"("type": "smooth_subtraction", "k": 0.1)");
   CHECK(share_of(scene, "b", {0.5, 0, 0}) == 1);
   CHECK(share_of(scene, "a", {-1, 0, 0}) == 1);

@@ -16,7 +16,8 @@
 
 namespace fathom::test::trace_test {
 
-TEST_CASE("a trace's last value is the program's, and its stacks are as high as the verifier says", "[trace]") {
+TEST_CASE("a trace's last value is the program's, and its stacks are as high as the verifier says",
+          "[interpret][trace]") {
   vm::Workspace workspace;
   for (int seed = 0; seed < scaled_cases(400); ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
@@ -44,7 +45,7 @@ TEST_CASE("a trace's last value is the program's, and its stacks are as high as 
   }
 }
 
-TEST_CASE("a trace shows what each instruction leaves", "[trace]") {
+TEST_CASE("a trace shows what each instruction leaves", "[interpret][trace]") {
   vm::Program program;
   program.append(vm::Opcode::Translate, 0, {1, 0, 0}, {});
   program.append(vm::Opcode::X, 0, {}, {});
@@ -62,7 +63,7 @@ TEST_CASE("a trace shows what each instruction leaves", "[trace]") {
 }
 
 // y + sqrt(x) with x < 0: the root is at fault, not the sum that takes the root's value.
-TEST_CASE("a trace finds the first instruction without a finite value", "[trace]") {
+TEST_CASE("a trace finds the first instruction without a finite value", "[interpret][trace]") {
   vm::Program code;
   code.append(vm::Opcode::Y, 0, {}, {});
   code.append(vm::Opcode::X, 0, {}, {});

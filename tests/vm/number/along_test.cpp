@@ -116,7 +116,7 @@ vm::VerifiedProgram over(Kind kind, const std::vector<double>& params,
 
 }  // namespace
 
-TEST_CASE("along a line: values and slopes are within the bounds, of every opcode", "[along][heavy]") {
+TEST_CASE("along a line: values and slopes are within the bounds, of every opcode", "[number][along][heavy]") {
   vm::Workspace workspace;
   std::set<Opcode> seen;
   int stretches = 0, bounded = 0, compared = 0;
@@ -145,7 +145,7 @@ TEST_CASE("along a line: values and slopes are within the bounds, of every opcod
   CHECK(compared > 8 * bounded);
 }
 
-TEST_CASE("along a line: sums of exponentials have bounded slopes", "[along]") {
+TEST_CASE("along a line: sums of exponentials have bounded slopes", "[number][along]") {
   vm::Workspace workspace;
   int compared = 0;
   for (int seed = 0; seed < scaled_cases(2000); ++seed) {
@@ -164,7 +164,7 @@ TEST_CASE("along a line: sums of exponentials have bounded slopes", "[along]") {
   CHECK(compared > scaled_cases(2000) * 6);
 }
 
-TEST_CASE("along a line: values are the judge's", "[along]") {
+TEST_CASE("along a line: values are the judge's", "[number][along]") {
   vm::Workspace workspace;
   for (int seed = 1; seed < scaled_cases(600); seed += 2) {
     Random random(seed);
@@ -181,7 +181,7 @@ TEST_CASE("along a line: values are the judge's", "[along]") {
   }
 }
 
-TEST_CASE("along a line: past a sphere's centre the derivative is nearly what it is", "[along]") {
+TEST_CASE("along a line: past a sphere's centre the derivative is nearly what it is", "[number][along]") {
   vm::Workspace workspace;
   const vm::VerifiedProgram ball = primitive_program(Kind::Sphere, {1});
   for (const double miss : {0.0, 0.5, 2.0}) {
@@ -209,7 +209,7 @@ TEST_CASE("along a line: past a sphere's centre the derivative is nearly what it
   CHECK(through.value.hi >= 5);
 }
 
-TEST_CASE("along a line: the derivative of a blend is between its operands'", "[along]") {
+TEST_CASE("along a line: the derivative of a blend is between its operands'", "[number][along]") {
   vm::Workspace workspace;
   const std::vector<std::pair<Kind, std::vector<double>>> planes = {{Kind::Plane, {1, 0, 0, 0}},
                                                                     {Kind::Plane, {0, 1, 0, 0}}};
@@ -228,7 +228,8 @@ TEST_CASE("along a line: the derivative of a blend is between its operands'", "[
   }
 }
 
-TEST_CASE("along a line: polygons and ellipses change no faster than the line, and not at all across", "[along]") {
+TEST_CASE("along a line: polygons and ellipses change no faster than the line, and not at all across",
+          "[number][along]") {
   vm::Workspace workspace;
   const std::pair<Kind, std::vector<double>> outlines[] = {{Kind::Polygon, {0, 0, 2, 0, 2, 1, 0.5, 1.5}},
                                                            {Kind::Ellipse, {1.5, 0.5}}};
@@ -248,7 +249,7 @@ TEST_CASE("along a line: polygons and ellipses change no faster than the line, a
   }
 }
 
-TEST_CASE("along a line: where copies change the derivative has no bound, within a cell it has", "[along]") {
+TEST_CASE("along a line: where copies change the derivative has no bound, within a cell it has", "[number][along]") {
   vm::Workspace workspace;
   const vm::VerifiedProgram row = over(Kind::Repetition, {2, 0, 0, 9, 0, 0, 0, 0, 0}, {{Kind::Sphere, {0.5}}});
   const vm::AlongLine within = along(row, {{0, 0.25, 0}, {1, 0, 0}, -0.75, -0.25}, workspace);
@@ -261,7 +262,7 @@ TEST_CASE("along a line: where copies change the derivative has no bound, within
   CHECK(finite(beyond.value));
 }
 
-TEST_CASE("along a line: steps are flat between their jumps", "[along][formula]") {
+TEST_CASE("along a line: steps are flat between their jumps", "[number][along][formula]") {
   vm::Workspace workspace;
   for (const Opcode opcode : {Opcode::Floor, Opcode::Ceil, Opcode::Nearest, Opcode::Sign}) {
     const vm::VerifiedProgram step = formula({{Opcode::X}, {opcode}});

@@ -87,7 +87,7 @@ bool same(float a, float b) { return a == b || (std::isnan(a) && std::isnan(b));
 
 }  // namespace
 
-TEST_CASE("float kernels are within 4 ulp, on a sample", "[elementary]") {
+TEST_CASE("float kernels are within 4 ulp, on a sample", "[number][elementary]") {
   for (const Kernel& kernel : kKernels) {
     const Worst worst = worst_of(kernel, 7, std::uint64_t{1} << 32, 9973);
     INFO(vm::info(kernel.opcode).mnemonic << ": " << worst.ulps << " ulp at " << worst.at);
@@ -111,7 +111,7 @@ TEST_CASE("float kernels are within 4 ulp, on every float", "[.][exhaustive]") {
   }
 }
 
-TEST_CASE("double kernels are within 1e-14", "[elementary]") {
+TEST_CASE("double kernels are within 1e-14", "[number][elementary]") {
   vm::Workspace workspace;
   for (const Kernel& kernel : kKernels) {
     const vm::VerifiedProgram program = formula({{Opcode::X}, {kernel.opcode}});
@@ -136,7 +136,8 @@ TEST_CASE("double kernels are within 1e-14", "[elementary]") {
   }
 }
 
-TEST_CASE("sine and cosine of turns and degrees are within 1e-15, and exact at quarter turns", "[elementary]") {
+TEST_CASE("sine and cosine of turns and degrees are within 1e-15, and exact at quarter turns",
+          "[number][elementary]") {
   using vm::real::SinCos;
   const long double full = 2 * std::acos(-1.0L);
   const auto error = [&](SinCos angle, long double turns) {
@@ -159,7 +160,7 @@ TEST_CASE("sine and cosine of turns and degrees are within 1e-15, and exact at q
   CHECK(vm::real::sin_cos_degrees(36e17 + 1024).sin == vm::real::sin_cos_degrees(1024).sin);
 }
 
-TEST_CASE("atan2 and pow against libm", "[elementary]") {
+TEST_CASE("atan2 and pow against libm", "[number][elementary]") {
   vm::Workspace workspace;
   const vm::VerifiedProgram angle = formula({{Opcode::X}, {Opcode::Y}, {Opcode::Atan2}});
   const vm::VerifiedProgram power = formula({{Opcode::X}, {Opcode::Y}, {Opcode::Power}});
@@ -183,7 +184,7 @@ TEST_CASE("atan2 and pow against libm", "[elementary]") {
   CHECK(worst_double <= 1e-15);
 }
 
-TEST_CASE("elementary functions at the edges", "[elementary]") {
+TEST_CASE("elementary functions at the edges", "[number][elementary]") {
   for (Opcode opcode : {Opcode::Sin, Opcode::Cos, Opcode::Tan, Opcode::Exp, Opcode::Log, Opcode::Asin, Opcode::Acos,
                         Opcode::Atan, Opcode::Floor, Opcode::Ceil, Opcode::Nearest, Opcode::Sign, Opcode::Not}) {
     INFO(vm::info(opcode).mnemonic);
@@ -229,7 +230,7 @@ TEST_CASE("elementary functions at the edges", "[elementary]") {
   }
 }
 
-TEST_CASE("binary mathematics by its table", "[elementary]") {
+TEST_CASE("binary mathematics by its table", "[number][elementary]") {
   struct Row {
     Opcode opcode;
     float a, b, result;

@@ -169,7 +169,7 @@ bool is_proved(const Piece& whole, double bound, bool of_directions, int pieces,
 
 }  // namespace
 
-TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
+TEST_CASE("noise is its definition's, in double and in float", "[number][noise]") {
   vm::Workspace workspace;
   Random random(1);
   const vm::VerifiedProgram program = noise_program();
@@ -189,7 +189,8 @@ TEST_CASE("noise is its definition's, in double and in float", "[noise]") {
   CHECK(worst <= vm::kNoiseUnits / 2 * 0x1p-24);
 }
 
-TEST_CASE("noise is within its range, and no steeper than its slope, whatever the hash", "[noise][released]") {
+TEST_CASE("noise is within its range, and no steeper than its slope, whatever the hash",
+          "[number][noise][released]") {
   CHECK(is_proved({}, kNoiseRange, false, 3'000'000, max_value));
   CHECK(is_proved({}, kNoiseSlope, true, 4'000'000, max_slope));
   // The bounds are nearly tight: in the middle of a cell the gradients can be such that the slope is 3.75.
@@ -197,7 +198,7 @@ TEST_CASE("noise is within its range, and no steeper than its slope, whatever th
   CHECK_FALSE(is_proved({}, 3.7499, true, 100'000, max_slope));
 }
 
-TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", "[noise][heavy]") {
+TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", "[number][noise][heavy]") {
   for (std::size_t i = 0; i < vm::kNoiseSlopes.size(); ++i) {
     // Axis 0: the coordinate near an integer is the dominant axis of the direction. Axis 1: the coordinate is
     // another.
@@ -211,7 +212,7 @@ TEST_CASE("noise is gentler near the planes of its lattice, whatever the hash", 
   }
 }
 
-TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[noise]") {
+TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[number][noise]") {
   vm::Workspace workspace;
   Random random(2);
   const vm::VerifiedProgram program = noise_program();
@@ -233,7 +234,7 @@ TEST_CASE("noise and its first two derivatives have no jumps at the lattice", "[
   }
 }
 
-TEST_CASE("the gradient of noise is the slope of its values", "[noise]") {
+TEST_CASE("the gradient of noise is the slope of its values", "[number][noise]") {
   vm::Workspace workspace;
   Random random(3);
   const vm::VerifiedProgram program = noise_program();
@@ -248,7 +249,7 @@ TEST_CASE("the gradient of noise is the slope of its values", "[noise]") {
   }
 }
 
-TEST_CASE("noise is 0 at whole points, repeats after 289 and ends at its reach", "[noise]") {
+TEST_CASE("noise is 0 at whole points, repeats after 289 and ends at its reach", "[number][noise]") {
   using vm::real::noise;
   constexpr double kInfinite = std::numeric_limits<double>::infinity(), kFar = vm::kNoiseReach;
   CHECK(noise(3, -7, 12) == 0);
@@ -266,7 +267,7 @@ TEST_CASE("noise is 0 at whole points, repeats after 289 and ends at its reach",
   }
 }
 
-TEST_CASE("noise has the same bits on every instruction set, as far as floats go", "[noise][isa]") {
+TEST_CASE("noise has the same bits on every instruction set, as far as floats go", "[number][noise][isa]") {
   const IsaGuard guard;
   vm::Workspace workspace;
   Random random(4);
@@ -292,7 +293,7 @@ TEST_CASE("noise has the same bits on every instruction set, as far as floats go
   }
 }
 
-TEST_CASE("the twelve directions come about equally often", "[noise]") {
+TEST_CASE("the twelve directions come about equally often", "[number][noise]") {
   int count[3][3][3] = {};
   constexpr int kSide = 60;
   for (int i = 0; i < kSide * kSide * kSide; ++i) {
@@ -311,7 +312,7 @@ TEST_CASE("the twelve directions come about equally often", "[noise]") {
   CHECK(directions == 12);
 }
 
-TEST_CASE("what is said of noise over boxes holds, and of small ones it is close", "[noise][range]") {
+TEST_CASE("what is said of noise over boxes holds, and of small ones it is close", "[number][noise][range]") {
   vm::Workspace workspace;
   Random random(5);
   const vm::VerifiedProgram program = noise_program();
@@ -354,7 +355,7 @@ TEST_CASE("what is said of noise over boxes holds, and of small ones it is close
   CHECK(said < 1.25 * met);
 }
 
-TEST_CASE("enclosures of noise hold every float, and of small boxes they are small", "[noise][enclosure]") {
+TEST_CASE("enclosures of noise hold every float, and of small boxes they are small", "[number][noise][enclosure]") {
   vm::Workspace workspace;
   Random random(6);
   const vm::VerifiedProgram program = noise_program();

@@ -16,7 +16,7 @@ using glm::dvec3;
 using vm::Opcode;
 
 // The two operands are the point's x and y: planes whose distance is a coordinate.
-TEST_CASE("unary and binary opcodes on a grid", "[evaluate][opcodes]") {
+TEST_CASE("unary and binary opcodes on a grid", "[number][evaluate][opcode]") {
   const double k = 0.5;
   struct Row {
     Opcode opcode;
@@ -71,7 +71,7 @@ TEST_CASE("unary and binary opcodes on a grid", "[evaluate][opcodes]") {
   }
 }
 
-TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][opcodes]") {
+TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[number][evaluate][opcode]") {
   vm::Workspace workspace;
   const std::pair<Opcode, Opcode> pairs[] = {
       {Opcode::SmoothMin, Opcode::Min}, {Opcode::SmoothMax, Opcode::Max}, {Opcode::SmoothSubtract, Opcode::Subtract}};
@@ -94,7 +94,7 @@ TEST_CASE("a blend of width 0 is the hard operator, bit for bit", "[evaluate][op
   }
 }
 
-TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs", "[evaluate][opcodes]") {
+TEST_CASE("where the operands of a blend tie, its gradient is the mean of theirs", "[number][evaluate][opcode]") {
   // Regression: the die of scenes/showcase.json had gradients of length sqrt 2.5 on its diagonal planes.
   for (const Kind kind : {Kind::SmoothUnion, Kind::SmoothIntersection, Kind::SmoothSubtraction}) {
     CAPTURE(static_cast<int>(kind));

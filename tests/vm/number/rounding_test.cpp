@@ -20,7 +20,7 @@ struct Three {
 
 }  // namespace
 
-TEST_CASE("three rounded members hold rounded values", "[canary]") {
+TEST_CASE("three rounded members hold rounded values", "[number][canary]") {
   volatile double source[] = {0.1, 0.2, 0.3};
   const double from[] = {source[0], source[1], source[2]};
   const Three three = rounded(from);

@@ -33,7 +33,7 @@ std::set<vm::Opcode> convex_shapes_of(const vm::Code& program) {
 
 }  // namespace
 
-TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[convexity]") {
+TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[program][convexity]") {
   std::set<vm::Opcode> seen;
   vm::Workspace workspace;
   Random random(41);
@@ -64,7 +64,7 @@ TEST_CASE("convexity: no chord of a convex shape's distance lies below it", "[co
 
 // Takes three points on a line within the convexity radius of p. If all three are nearer to the solid than any
 // non-convex part can come, the value at the middle point is at most the chord's.
-TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
+TEST_CASE("convexity: what random scenes tell holds", "[program][convexity]") {
   vm::Workspace workspace;
   int far_reaching = 0, tried = 0;
   for (int seed = 0; seed < scaled_cases(400); ++seed) {
@@ -102,7 +102,7 @@ TEST_CASE("convexity: what random scenes tell holds", "[convexity]") {
 }
 
 TEST_CASE("convexity: distances beside it have the same bits, and it has them on every instruction set",
-          "[convexity][isa]") {
+          "[program][convexity][isa]") {
   const IsaGuard guard;
   vm::Workspace workspace;
   constexpr std::size_t kPoints = 300;

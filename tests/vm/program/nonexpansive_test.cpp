@@ -60,7 +60,7 @@ std::vector<vm::VerifiedProgram> parts_of(const Row& row, vm::Form form) {
 
 }  // namespace
 
-TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[enclosure]") {
+TEST_CASE("rows said to be nonexpansive are, wherever two points lie", "[program][enclosure]") {
   vm::Workspace workspace;
   std::set<Opcode> seen;
   int violations = 0;

@@ -35,7 +35,7 @@ void for_each_opcode(const Check& check) {
 
 }  // namespace
 
-TEST_CASE("every opcode has its own row and mnemonic", "[opcode]") {
+TEST_CASE("every opcode has its own row and mnemonic", "[program][opcode]") {
   std::set<std::string_view> mnemonics;
   for_each_opcode([&](std::uint32_t i, const OpcodeInfo& row) {
     CHECK(static_cast<std::uint32_t>(row.opcode) == i);
@@ -49,7 +49,7 @@ TEST_CASE("every opcode has its own row and mnemonic", "[opcode]") {
   CHECK(vm::find_opcode(256) == nullptr);
 }
 
-TEST_CASE("the columns at hand are the table's, and count the words of every instruction", "[opcode]") {
+TEST_CASE("the columns at hand are the table's, and count the words of every instruction", "[program][opcode]") {
   for_each_opcode([](std::uint32_t i, const OpcodeInfo& row) {
     const vm::OpcodeRow& at_hand = vm::row_of(i);
     CHECK((at_hand.opcode == row.opcode && at_hand.form == row.form));
@@ -64,7 +64,7 @@ TEST_CASE("the columns at hand are the table's, and count the words of every ins
   });
 }
 
-TEST_CASE("immediates are counted, named and told apart", "[opcode]") {
+TEST_CASE("immediates are counted, named and told apart", "[program][opcode]") {
   for_each_opcode([](std::uint32_t, const OpcodeInfo& row) {
     std::set<std::string_view> names;
     for (int i = 0; i < row.immediates; ++i) {
@@ -87,7 +87,7 @@ TEST_CASE("immediates are counted, named and told apart", "[opcode]") {
   CHECK(vm::count_names("  a  bc d ") == 3);
 }
 
-TEST_CASE("forms, stack effects and choices go together", "[opcode]") {
+TEST_CASE("forms, stack effects and choices go together", "[program][opcode]") {
   for_each_opcode([](std::uint32_t, const OpcodeInfo& row) {
     const vm::StackEffect& effect = row.effect;
     CHECK(effect.values_needed + effect.values_change >= 0);
@@ -107,7 +107,7 @@ TEST_CASE("forms, stack effects and choices go together", "[opcode]") {
   CHECK_FALSE(vm::info(Opcode::Drop).has_operand);
 }
 
-TEST_CASE("facts go with forms, and with each other", "[opcode]") {
+TEST_CASE("facts go with forms, and with each other", "[program][opcode]") {
   for_each_opcode([](std::uint32_t, const OpcodeInfo& row) {
     const auto has = [&](Fact fact) { return vm::has(row.facts, fact); };
     const bool shape = row.form == Form::Shape || row.form == Form::Outline;
@@ -127,7 +127,7 @@ TEST_CASE("facts go with forms, and with each other", "[opcode]") {
 }
 
 // The immediates suit a smooth blend, the only row that commutes and has any.
-TEST_CASE("rows said to commute do", "[opcode]") {
+TEST_CASE("rows said to commute do", "[program][opcode]") {
   vm::Workspace workspace;
   Random random(31);
   for_each_opcode([&](std::uint32_t, const OpcodeInfo& row) {
@@ -149,7 +149,7 @@ TEST_CASE("rows said to commute do", "[opcode]") {
   });
 }
 
-TEST_CASE("an opcode word takes apart into what it was made of", "[opcode]") {
+TEST_CASE("an opcode word takes apart into what it was made of", "[program][opcode]") {
   for (std::uint32_t operand : {0u, 1u, 255u, 256u, vm::kMaxOperand}) {
     const std::uint32_t word = vm::opcode_word(Opcode::Tag, operand);
     CHECK(vm::operand_of(word) == operand);

@@ -8,7 +8,7 @@
 
 namespace fathom {
 
-TEST_CASE("parallel_for takes every index once", "[vm]") {
+TEST_CASE("parallel_for takes every index once", "[program]") {
   for (const int threads : {-1, 0, 1, 2, 7}) {
     for (const std::size_t count : {0, 1, 5, 1000}) {
       CAPTURE(threads, count);
@@ -20,7 +20,7 @@ TEST_CASE("parallel_for takes every index once", "[vm]") {
   }
 }
 
-TEST_CASE("parallel_for makes scratch once per thread, on that thread", "[vm]") {
+TEST_CASE("parallel_for makes scratch once per thread, on that thread", "[program]") {
   struct Scratch {
     std::thread::id owner = std::this_thread::get_id();
     std::unique_ptr<int> cannot_be_copied;
@@ -39,14 +39,14 @@ TEST_CASE("parallel_for makes scratch once per thread, on that thread", "[vm]") 
   CHECK(owners.count(std::this_thread::get_id()) == 1);
 }
 
-TEST_CASE("parallel_for starts no more threads than there are indices", "[vm]") {
+TEST_CASE("parallel_for starts no more threads than there are indices", "[program]") {
   std::atomic<int> made = 0;
   parallel_for(
       16, 3, [&] { return ++made; }, [](int, std::size_t) {});
   CHECK(made == 3);
 }
 
-TEST_CASE("parallel_for on one thread goes in order", "[vm]") {
+TEST_CASE("parallel_for on one thread goes in order", "[program]") {
   std::vector<std::size_t> order;
   parallel_for(
       1, 4, [] { return 0; }, [&](int, std::size_t i) { order.push_back(i); });

@@ -85,6 +85,6 @@ std::string verdict(const std::string& input) {
 
 }  // namespace
 
-TEST_CASE("golden verifier rules", "[verify]") { test::check_golden("verifier", verdict); }
+TEST_CASE("golden verifier rules", "[program][verify]") { test::check_golden("verifier", verdict); }
 
 }  // namespace fathom::test::verifier_golden_test

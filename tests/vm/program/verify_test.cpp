@@ -57,7 +57,7 @@ vm::Limits limits_with(const Change& change) {
 
 }  // namespace
 
-TEST_CASE("a program that keeps the rules passes with its stack heights", "[verify]") {
+TEST_CASE("a program that keeps the rules passes with its stack heights", "[program][verify]") {
   auto result = vm::verify(program_of({kMove,
                                        kSphere,
                                        {Opcode::Tee, {}, 0},
@@ -76,7 +76,7 @@ TEST_CASE("a program that keeps the rules passes with its stack heights", "[veri
   CHECK(program.program().words.size() == 13);
 }
 
-TEST_CASE("every opcode must exist", "[verify]") {
+TEST_CASE("every opcode must exist", "[program][verify]") {
   Program program = program_of({kSphere});
   program.words.push_back(vm::kOpcodeCount);
   program.doubles.push_back(0);
@@ -85,7 +85,7 @@ TEST_CASE("every opcode must exist", "[verify]") {
   refused(program, 2, "no opcode 255");
 }
 
-TEST_CASE("no instruction may be cut off", "[verify]") {
+TEST_CASE("no instruction may be cut off", "[program][verify]") {
   Program program = program_of({kSphere, {Opcode::Box, {1, 2, 3}}, kMin});
   for (std::size_t keep : {3u, 4u, 5u}) {
     Program cut = program;
@@ -95,7 +95,7 @@ TEST_CASE("no instruction may be cut off", "[verify]") {
   }
 }
 
-TEST_CASE("an instruction finds what it needs on the stacks", "[verify]") {
+TEST_CASE("an instruction finds what it needs on the stacks", "[program][verify]") {
   refused(program_of({kMin}), 0, "min needs 2 values, the stack holds 0");
   refused(program_of({kSphere, kMin}), 2, "min needs 2 values, the stack holds 1");
   refused(program_of({{Opcode::Negate}}), 0, "negate needs 1 values, the stack holds 0");
@@ -104,13 +104,13 @@ TEST_CASE("an instruction finds what it needs on the stacks", "[verify]") {
   refused(program_of({kSphere, kDrop}), 2, "drop would take the caller's point");
 }
 
-TEST_CASE("a program ends with one value and the caller's point", "[verify]") {
+TEST_CASE("a program ends with one value and the caller's point", "[program][verify]") {
   refused(program_of({}), 0, "ends with 0 values and 1 points");
   refused(program_of({kSphere, kSphere}), 4, "ends with 2 values and 1 points");
   refused(program_of({kMove, kSphere}), 6, "ends with 1 values and 2 points");
 }
 
-TEST_CASE("locals are declared and written before they are read", "[verify]") {
+TEST_CASE("locals are declared and written before they are read", "[program][verify]") {
   refused(program_of({{Opcode::Load, {}, 0}}, 1), 0, "load 0: the local is read before it is written");
   refused(program_of({kSphere, {Opcode::Tee, {}, 0}, {Opcode::Load, {}, 1}, kMin}, 2), 3, "load 1");
   refused(program_of({kSphere, {Opcode::Tee, {}, 1}}, 1), 2, "tee 1: the program declares 1 locals");
@@ -118,14 +118,14 @@ TEST_CASE("locals are declared and written before they are read", "[verify]") {
   refused(program_of({kSphere, {Opcode::Tee, {}, vm::kMaxOperand}}, 1), 2, "the program declares 1 locals");
 }
 
-TEST_CASE("only some instructions have an operand", "[verify]") {
+TEST_CASE("only some instructions have an operand", "[program][verify]") {
   Program program = program_of({kSphere});
   program.words[0] |= 4u << 8;
   refused(program, 0, "sphere has no operand 4");
   CHECK(passes(program_of({kSphere, {Opcode::Tag, {}, vm::kMaxOperand}})));
 }
 
-TEST_CASE("operands of shapes and functions are ones they have", "[verify]") {
+TEST_CASE("operands of shapes and functions are ones they have", "[program][verify]") {
   const auto modes = [](std::uint32_t operand) { return Instruction{Opcode::Sphere, {1, 2, 3, 0.5}, operand}; };
   CHECK(passes(program_of({modes(vm::kFusedTranslate)})));
   CHECK(passes(program_of({kSphere, modes(vm::kFusedTranslate | vm::kFusedMin)})));
@@ -151,7 +151,7 @@ TEST_CASE("operands of shapes and functions are ones they have", "[verify]") {
   refused(program_of({kSphere, local}), 2, "the program declares 0 locals");
 }
 
-TEST_CASE("immediates are finite, in float and in double", "[verify]") {
+TEST_CASE("immediates are finite, in float and in double", "[program][verify]") {
   for (float bad : {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
                     std::numeric_limits<float>::quiet_NaN()}) {
     Program program = program_of({kMove, kSphere, kDrop});
@@ -165,7 +165,7 @@ TEST_CASE("immediates are finite, in float and in double", "[verify]") {
   refused(program_of({{Opcode::Sphere, {1e39}}}), 0, "sphere: radius is not finite");  // finite in double only
 }
 
-TEST_CASE("the wide table is as long as the code", "[verify]") {
+TEST_CASE("the wide table is as long as the code", "[program][verify]") {
   Program program = program_of({kSphere});
   program.doubles.pop_back();
   refused(program, 0, "wide");
@@ -173,7 +173,7 @@ TEST_CASE("the wide table is as long as the code", "[verify]") {
   refused(program, 0, "wide");
 }
 
-TEST_CASE("integer immediates are in the opcode's range", "[verify]") {
+TEST_CASE("integer immediates are in the opcode's range", "[program][verify]") {
   const auto bulb = [](double power, double iterations) {
     std::vector<double> immediates(static_cast<std::size_t>(vm::info(Opcode::Mandelbulb).immediates), 1.0);
     immediates[0] = power, immediates[1] = iterations;
@@ -190,7 +190,7 @@ TEST_CASE("integer immediates are in the opcode's range", "[verify]") {
   CHECK(vm::largest_integer(row, 99) == 0);
 }
 
-TEST_CASE("limits hold at their edge", "[verify]") {
+TEST_CASE("limits hold at their edge", "[program][verify]") {
   const Program two_words = program_of({kSphere});
   CHECK(passes(two_words, limits_with([](vm::Limits& l) { l.words = 2; })));
   refused(two_words, 0, "2 words; at most 1", limits_with([](vm::Limits& l) { l.words = 1; }));
@@ -208,7 +208,7 @@ TEST_CASE("limits hold at their edge", "[verify]") {
   refused(three_points, 4, "a stack grows beyond 2", limits_with([](vm::Limits& l) { l.stack = 2; }));
 }
 
-TEST_CASE("random words are refused or run: nothing in between", "[verify]") {
+TEST_CASE("random words are refused or run: nothing in between", "[program][verify]") {
   std::uint64_t state = 1;
   int passed = 0;
   for (int round = 0; round < 20000; ++round) {

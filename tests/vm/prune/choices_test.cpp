@@ -48,7 +48,7 @@ vm::VerifiedProgram operand_program(const vm::VerifiedProgram& whole, std::size_
 
 }  // namespace
 
-TEST_CASE("the operands of every choice are within their bounds", "[enclosure]") {
+TEST_CASE("the operands of every choice are within their bounds", "[prune][enclosure]") {
   vm::Workspace workspace;
   int outside = 0, compared = 0;
   for (std::uint64_t seed = 0; seed < 150 && outside < 20; ++seed) {
@@ -75,7 +75,7 @@ TEST_CASE("the operands of every choice are within their bounds", "[enclosure]")
   CHECK(compared > 300);
 }
 
-TEST_CASE("enclosures of fused programs are those of plain ones, choice for choice", "[enclosure]") {
+TEST_CASE("enclosures of fused programs are those of plain ones, choice for choice", "[prune][enclosure]") {
   vm::Workspace workspace;
   Random random(5);
   const std::string objects = R"({"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 0.5, 2]},
@@ -101,7 +101,7 @@ TEST_CASE("enclosures of fused programs are those of plain ones, choice for choi
   }
 }
 
-TEST_CASE("a choice between far spheres is decided, between near ones it is not", "[enclosure]") {
+TEST_CASE("a choice between far spheres is decided, between near ones it is not", "[prune][enclosure]") {
   vm::Program code;
   code.append(Opcode::Sphere, 0, {1}, {});
   code.append(Opcode::Sphere, vm::kFusedTranslate | vm::kFusedMin, {4, 0, 0, 1}, {});

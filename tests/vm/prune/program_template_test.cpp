@@ -82,7 +82,8 @@ std::size_t wrong_distances(const Packed& packed, const std::vector<vm::PrunedPr
 
 }  // namespace
 
-TEST_CASE("skeletons: parts of random scenes come out as they were put in, with their own distances", "[skeleton]") {
+TEST_CASE("skeletons: parts of random scenes come out as they were put in, with their own distances",
+          "[prune][skeleton]") {
   std::size_t parts_seen = 0, program_templates = 0, compared = 0, wrong = 0;
   const std::string before(vm::isa_name());
   for (std::uint64_t seed = 0; seed < 150; ++seed) {
@@ -115,7 +116,8 @@ TEST_CASE("skeletons: parts of random scenes come out as they were put in, with 
   CHECK(program_templates < parts_seen / 2);
 }
 
-TEST_CASE("skeletons: small shapes are one, whichever they are and whatever surface they belong to", "[skeleton]") {
+TEST_CASE("skeletons: small shapes are one, whichever they are and whatever surface they belong to",
+          "[prune][skeleton]") {
   std::string objects;
   for (const char* shape : {"\"sphere\", \"radius\": 0.3", "\"box\", \"half_size\": [0.3, 0.2, 0.1]",
                             "\"torus\", \"major_radius\": 0.3, \"minor_radius\": 0.1",
@@ -145,7 +147,7 @@ TEST_CASE("skeletons: small shapes are one, whichever they are and whatever surf
 
 // Each turned shape had a map and a drop of its own, so that 10,000 blended bodies had 42,160 templates, and a batch
 // of lanes was a quarter full.
-TEST_CASE("skeletons: turned shapes and those that are not are one", "[skeleton]") {
+TEST_CASE("skeletons: turned shapes and those that are not are one", "[prune][skeleton]") {
   Random random(3);
   std::string objects;
   for (int i = 0; i < 120; ++i) {
@@ -176,7 +178,7 @@ TEST_CASE("skeletons: turned shapes and those that are not are one", "[skeleton]
   }
 }
 
-TEST_CASE("skeletons: what several threads have packed becomes one", "[skeleton]") {
+TEST_CASE("skeletons: what several threads have packed becomes one", "[prune][skeleton]") {
   Random random(5);
   const auto verified = vm::verify(compiler::fuse(plain_lowering(random_scene(random, {})).program()));
   const auto& program = std::get<vm::VerifiedProgram>(verified);

@@ -188,7 +188,7 @@ void random_range(Random& random, float& lo, float& hi) {
 
 }  // namespace
 
-TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[specialise]") {
+TEST_CASE("specialise: parts of random scenes give the whole programs' bits in their boxes", "[prune][specialise]") {
   Tally tally;
   for (int seed = 0; seed < scaled_cases(200); ++seed) {
     Random random(seed);
@@ -206,7 +206,7 @@ TEST_CASE("specialise: parts of random scenes give the whole programs' bits in t
 }
 
 TEST_CASE("specialise: parts by bounds of the exact function equal it, in double and in float",
-          "[specialise][slope]") {
+          "[prune][specialise][slope]") {
   vm::Workspace workspace;
   vm::Specialiser specialiser;
   int cut = 0, compared = 0;
@@ -252,7 +252,8 @@ TEST_CASE("specialise: parts by bounds of the exact function equal it, in double
 
 // Two planes whose gap is about the blend's width, which double and float round to different sides of the width. The
 // specialiser must keep the operands that the exact blend still mixes.
-TEST_CASE("specialise: operands that only float holds apart are kept for the exact function", "[specialise][slope]") {
+TEST_CASE("specialise: operands that only float holds apart are kept for the exact function",
+          "[prune][specialise][slope]") {
   vm::Workspace workspace;
   const double k = 0.1 + 1e-9;  // float rounds it down to 0.1f
   const double apart = static_cast<double>(static_cast<float>(k));
@@ -270,7 +271,7 @@ TEST_CASE("specialise: operands that only float holds apart are kept for the exa
 
 // min(sqrt(x), y): where x is negative the value is y, which is beyond the limit. Regression: the specialiser kept
 // only the root, so the value beyond the limit became NaN.
-TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[specialise]") {
+TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[prune][specialise]") {
   using vm::Opcode;
   const std::vector<std::vector<Step>> programs = {
       {{Opcode::X}, {Opcode::Sqrt}, {Opcode::Y}, {Opcode::Min}},
@@ -304,7 +305,7 @@ TEST_CASE("specialise: what may be NaN is not left alone for a limit's sake", "[
 }
 
 TEST_CASE("specialise: choices settled by pairs are those settled where each is of interest everywhere",
-          "[specialise]") {
+          "[prune][specialise]") {
   Random random(11);
   std::vector<vm::ChoiceLink> links;
   std::vector<vm::ChoiceRange> ranges;
@@ -333,7 +334,7 @@ TEST_CASE("specialise: choices settled by pairs are those settled where each is 
 }
 
 // Regression: a drop with no value on the stack wrote before the beginning of the reader's own stack.
-TEST_CASE("a program that drops a point at which nothing was computed is no expression", "[specialise]") {
+TEST_CASE("a program that drops a point at which nothing was computed is no expression", "[prune][specialise]") {
   vm::Program program;
   program.append(vm::Opcode::Translate, 0, {1, 0, 0}, {});
   program.append(vm::Opcode::Drop, 0, {}, {});
@@ -344,7 +345,7 @@ TEST_CASE("a program that drops a point at which nothing was computed is no expr
   CHECK_FALSE(expression.read(std::get<vm::VerifiedProgram>(verified)));
 }
 
-TEST_CASE("any sound program can be read as an expression or is refused", "[specialise]") {
+TEST_CASE("any sound program can be read as an expression or is refused", "[prune][specialise]") {
   vm::DefUseGraph expression;
   int expressions = 0;
   for (int seed = 0; seed < scaled_cases(4000); ++seed) {
@@ -364,7 +365,7 @@ TEST_CASE("any sound program can be read as an expression or is refused", "[spec
 
 // Regression: the reader compared each moved shape of a program with locals with all earlier ones, which took
 // minutes.
-TEST_CASE("places that are met again are found among a hundred thousand", "[specialise]") {
+TEST_CASE("places that are met again are found among a hundred thousand", "[prune][specialise]") {
   vm::Program program;
   program.locals = 1;
   program.append(vm::Opcode::Sphere, 0, {1}, {});

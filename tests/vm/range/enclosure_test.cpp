@@ -69,7 +69,7 @@ vm::Range range_in(const vm::VerifiedProgram& program, glm::vec3 lo, glm::vec3 h
 
 }  // namespace
 
-TEST_CASE("what the f32 machine computes is within its enclosure, of every opcode", "[enclosure][heavy]") {
+TEST_CASE("what the f32 machine computes is within its enclosure, of every opcode", "[range][enclosure][heavy]") {
   vm::Workspace workspace;
   std::set<Opcode> seen;
   int outside = 0, bounded = 0, boxes_tried = 0;
@@ -94,7 +94,8 @@ TEST_CASE("what the f32 machine computes is within its enclosure, of every opcod
   CHECK(bounded > 0.6 * boxes_tried);
 }
 
-TEST_CASE("enclosures hold of shapes of a thousand units, whose errors are those of their size", "[enclosure]") {
+TEST_CASE("enclosures hold of shapes of a thousand units, whose errors are those of their size",
+          "[range][enclosure]") {
   vm::Workspace workspace;
   Random random(8);
   for (const compiler::Sort sort : {compiler::Sort::Solid, compiler::Sort::Outline}) {
@@ -117,7 +118,7 @@ TEST_CASE("enclosures hold of shapes of a thousand units, whose errors are those
   }
 }
 
-TEST_CASE("enclosures of functions hold every float of short runs", "[enclosure][elementary]") {
+TEST_CASE("enclosures of functions hold every float of short runs", "[range][enclosure][elementary]") {
   vm::Workspace workspace;
   Random random(3);
   for (int i = 0; i < vm::kOpcodeCount; ++i) {
@@ -148,7 +149,7 @@ TEST_CASE("enclosures of functions hold every float of short runs", "[enclosure]
 }
 
 TEST_CASE("at a point an enclosure is the value, and kernels widen it by a few units in the last place",
-          "[enclosure]") {
+          "[range][enclosure]") {
   vm::Workspace workspace;
   Random random(4);
   const Opcode exact[] = {Opcode::Abs,     Opcode::Square, Opcode::Sqrt, Opcode::Floor, Opcode::Ceil,
@@ -179,7 +180,7 @@ TEST_CASE("at a point an enclosure is the value, and kernels widen it by a few u
   for (const Opcode opcode : kernels) check(opcode, 0x1p-19);
 }
 
-TEST_CASE("enclosures where the answer is known", "[enclosure]") {
+TEST_CASE("enclosures where the answer is known", "[range][enclosure]") {
   const auto is = [](vm::Range range, double lo, double hi) { return range.lo == lo && range.hi == hi; };
   const auto square_less_one = formula({{Opcode::X}, {Opcode::Square}, {Opcode::Constant, {1}}, {Opcode::Minus}});
   CHECK(is(range_in(square_less_one, {-1, 0, 0}, {2, 0, 0}), -1, 3));
@@ -212,7 +213,7 @@ TEST_CASE("enclosures where the answer is known", "[enclosure]") {
   CHECK(is(range_in(waves, {1e30f, 0, 0}, {1e30f, 0, 0}), -1, 1));
 }
 
-TEST_CASE("enclosures are the same bits on every instruction set", "[enclosure][isa]") {
+TEST_CASE("enclosures are the same bits on every instruction set", "[range][enclosure][isa]") {
   const IsaGuard guard;
   vm::Workspace workspace;
   for (std::uint64_t seed = 0; seed < 240; ++seed) {

@@ -122,20 +122,20 @@ void check_loop(Opcode opcode, const std::vector<double>& immediates, std::size_
 
 }  // namespace
 
-TEST_CASE("the loops of recorded functions are found again", "[emit]") {
+TEST_CASE("the loops of recorded functions are found again", "[record][emit]") {
   check_loop(Opcode::Mandelbulb, {8, 9, 16, 1.104, 0.0005}, 9);
   check_loop(Opcode::Julia, {-0.2, 0.6, 0.1, 0.3, 11, 2.1, 40, 0.001}, 11);
   check_loop(Opcode::Ellipse, {1.25, 0.5, 1.3125, 0}, 24);
 }
 
-TEST_CASE("a recorded function of a single pass, or without a test, stays as it is", "[emit]") {
+TEST_CASE("a recorded function of a single pass, or without a test, stays as it is", "[record][emit]") {
   vm::Program program;
   program.append(Opcode::Mandelbulb, 0, {8, 1, 16, 1.104, 0.0005}, {});
   CHECK_FALSE(vm::reroll(vm::record(Opcode::Mandelbulb, std::span(program.words).subspan(1))).loop);
   CHECK_FALSE(vm::reroll(vm::record(Opcode::Gyroid, {})).loop);
 }
 
-TEST_CASE("passes that differ are not taken for a loop", "[emit]") {
+TEST_CASE("passes that differ are not taken for a loop", "[record][emit]") {
   // v = x; three passes: test v < 1; v = v + y. Later the last pass becomes v - y.
   const auto statement = [](std::uint32_t index) { return Ref{Ref::Kind::Statement, index}; };
   const Ref x{Ref::Kind::Parameter, 0}, y{Ref::Kind::Parameter, 1}, one{Ref::Kind::Number, 0, 1};

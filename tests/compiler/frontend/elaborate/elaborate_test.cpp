@@ -26,7 +26,7 @@ using namespace fathom::test;
 
 const std::string kRedBlue = R"(, "materials": {"red": {"type": "diffuse"}, "blue": {"type": "diffuse"}})";
 
-TEST_CASE("one object is the root, several are a union", "[elaborate]") {
+TEST_CASE("one object is the root, several are a union", "[frontend][elaborate]") {
   CHECK(listing(of_objects(R"({"type": "sphere", "radius": 2})")) ==
         "%0 = sphere radius=2\n%1 = paint surface=0 %0\n");
   CHECK(listing(of_objects(R"({"type": "sphere", "radius": 2}, {"type": "plane", "normal": [0, 1, 0]})")) ==
@@ -37,7 +37,7 @@ TEST_CASE("one object is the root, several are a union", "[elaborate]") {
         "%4 = union %1 %3\n");
 }
 
-TEST_CASE("defaults are those of the documentation", "[elaborate]") {
+TEST_CASE("defaults are those of the documentation", "[frontend][elaborate]") {
   const ElaboratedScene e =
       of_objects(R"({"type": "sphere", "radius": 1})", R"(, "camera": {}, "film": {}, "render": {})");
   CHECK(e.camera.projection == Camera::Projection::Perspective);
@@ -58,7 +58,7 @@ TEST_CASE("defaults are those of the documentation", "[elaborate]") {
   CHECK(e.materials[0].color == glm::dvec3(0.8));
 }
 
-TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
+TEST_CASE("the table's defaults are those of the structs", "[frontend][elaborate]") {
   // A scene without the record has the struct's defaults, and a scene with an empty record has the table's. These
   // defaults must agree.
   CHECK(film_record().find("width")->fallback[0] == Film().width);
@@ -74,7 +74,7 @@ TEST_CASE("the table's defaults are those of the structs", "[elaborate]") {
   CHECK(material_records()[3].find("ior")->fallback[0] == Material().ior);
 }
 
-TEST_CASE("lights and skies are read", "[elaborate]") {
+TEST_CASE("lights and skies are read", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "background": {"type": "sky", "elevation": 30, "azimuth": 90, "turbidity": 5, "ground_albedo": [0.1, 0.2, 0.3],
                      "strength": 2, "sun_disc": false},
@@ -99,7 +99,7 @@ TEST_CASE("lights and skies are read", "[elaborate]") {
   CHECK(sky_row.find("strength")->fallback[0] == Background::Sky().strength);
 }
 
-TEST_CASE("settings are read", "[elaborate]") {
+TEST_CASE("settings are read", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(,
       "$schema": 5,
       "camera": {"position": [1, 2, 3], "target": [4, 5, 6], "up": [0, 0, 1], "fov_y": 90},
@@ -129,7 +129,7 @@ TEST_CASE("settings are read", "[elaborate]") {
   CHECK(o.background.top == glm::dvec3(1, 2, 3));
 }
 
-TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
+TEST_CASE("lenses, panoramas, filters and samplers are read", "[frontend][elaborate]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
   const ElaboratedScene e = of_objects(ball, R"(,
       "camera": {"position": [0, 0, 5], "focal_length": 50, "sensor_width": 24, "f_stop": 1.4, "focus": [7, 2, 1],
@@ -145,7 +145,7 @@ TEST_CASE("lenses, panoramas, filters and samplers are read", "[elaborate]") {
   CHECK(of_objects(ball, R"(, "camera": {"type": "panorama"})").camera.projection == Camera::Projection::Panorama);
 }
 
-TEST_CASE("materials are read", "[elaborate]") {
+TEST_CASE("materials are read", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"type": "sphere", "radius": 1})", R"(, "materials": {
       "a": {"type": "diffuse", "color": [0.1, 0.2, 0.3]},
       "b": {"type": "emissive", "emission": [4, 5, 6]},
@@ -163,14 +163,14 @@ TEST_CASE("materials are read", "[elaborate]") {
   CHECK(e.materials[3].absorption == glm::dvec3(0, 0.1, 0.2));
 }
 
-TEST_CASE("equal nodes are one, whatever they are called", "[elaborate]") {
+TEST_CASE("equal nodes are one, whatever they are called", "[frontend][elaborate]") {
   const ElaboratedScene e =
       of_objects(R"({"type": "union", "of": [{"use": "a"}, {"use": "b"}, {"type": "sphere", "radius": 1}]})",
                  R"(, "nodes": {"a": {"type": "sphere", "radius": 1}, "b": {"use": "a"}})");
   CHECK(listing(e) == "%0 = sphere radius=1\n%1 = union %0 %0 %0\n%2 = paint surface=0 %1\n");
 }
 
-TEST_CASE("parameters stand in the node table's order", "[elaborate]") {
+TEST_CASE("parameters stand in the node table's order", "[frontend][elaborate]") {
   CHECK(
       listing(of_objects(R"({"thickness": 0.5, "c": [0, 1, 0], "a": [0, 0, 0], "type": "triangle", "b": [1, 0, 0]})"))
           .starts_with("%0 = triangle a=[0,0,0] b=[1,0,0] c=[0,1,0] thickness=0.5\n"));
@@ -178,7 +178,7 @@ TEST_CASE("parameters stand in the node table's order", "[elaborate]") {
             .find("smooth_union k=0 %0") != std::string::npos);
 }
 
-TEST_CASE("materials: the inner one wins, and each object has surfaces of its own", "[elaborate]") {
+TEST_CASE("materials: the inner one wins, and each object has surfaces of its own", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"name": "pair", "material": "red", "type": "union", "of": [
         {"type": "sphere", "radius": 1}, {"type": "sphere", "radius": 2, "material": "blue"}]},
       {"use": "ball", "material": "red"}, {"use": "ball"})",
@@ -196,7 +196,7 @@ TEST_CASE("materials: the inner one wins, and each object has surfaces of its ow
   CHECK(surfaces(e) == "pair:blue pair:red ball:red ball 2:default ");
 }
 
-TEST_CASE("a definition's own material beats the one of its use", "[elaborate]") {
+TEST_CASE("a definition's own material beats the one of its use", "[frontend][elaborate]") {
   const ElaboratedScene e =
       of_objects(R"({"use": "ball", "material": "red"})",
                  kRedBlue + R"(, "nodes": {"ball": {"type": "sphere", "radius": 1, "material": "blue"}})");
@@ -204,7 +204,7 @@ TEST_CASE("a definition's own material beats the one of its use", "[elaborate]")
   CHECK(surfaces(e) == "ball:blue ");
 }
 
-TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]") {
+TEST_CASE("no paint around what is painted throughout, none twice", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"type": "union", "of": [
       {"type": "sphere", "radius": 1, "material": "red"},
       {"type": "onion", "thickness": 1, "of": {"type": "sphere", "radius": 2, "material": "blue"}}]})",
@@ -223,14 +223,14 @@ TEST_CASE("no paint around what is painted throughout, none twice", "[elaborate]
   CHECK(listing(same) == "%0 = sphere radius=1\n%1 = sphere radius=2\n%2 = union %0 %1\n%3 = paint surface=0 %2\n");
 }
 
-TEST_CASE("paint lies outside the transform of its node", "[elaborate]") {
+TEST_CASE("paint lies outside the transform of its node", "[frontend][elaborate]") {
   CHECK(listing(of_objects(R"({"type": "sphere", "radius": 1, "translate": [1, 2, 3]})")) ==
         "%0 = sphere radius=1\n"
         "%1 = transform rows=[1,0,0,-1,0,1,0,-2,0,0,1,-3] factor=1 %0\n"
         "%2 = paint surface=0 %1\n");
 }
 
-TEST_CASE("names of objects are unique", "[elaborate]") {
+TEST_CASE("names of objects are unique", "[frontend][elaborate]") {
   const std::string ball = R"({"type": "sphere", "radius": 1})";
   const ElaboratedScene e =
       of_objects(ball + "," + ball + R"(, {"name": "sphere 3", "type": "sphere", "radius": 1},)" + ball +
@@ -238,7 +238,7 @@ TEST_CASE("names of objects are unique", "[elaborate]") {
   CHECK(surfaces(e) == "sphere:default sphere 2:default sphere 3:default sphere 4:default sphere 5:default ");
 }
 
-TEST_CASE("quarter turns are exact", "[elaborate]") {
+TEST_CASE("quarter turns are exact", "[frontend][elaborate]") {
   const auto rows = [](const std::string& placement) {
     const std::string text = listing(of_objects(R"({"type": "sphere", "radius": 1, )" + placement + "}"));
     const std::size_t begin = text.find("rows=");
@@ -255,7 +255,7 @@ TEST_CASE("quarter turns are exact", "[elaborate]") {
   CHECK(rows(R"("rotate": {"axis": [1e-200, 0, 0], "angle": 180})") == "rows=[1,0,0,0,0,-1,0,0,0,0,-1,0] factor=1");
 }
 
-TEST_CASE("the transform undoes scale, then rotate, then translate", "[elaborate]") {
+TEST_CASE("the transform undoes scale, then rotate, then translate", "[frontend][elaborate]") {
   const glm::dvec3 scale(0.5, 2, 3), angles(20, -35, 110), move(1, -2, 0.5);
   const auto params = transform_params(scale, rotation_xyz(angles), move);
   CHECK(params[12] == 0.5);
@@ -282,7 +282,7 @@ TEST_CASE("the transform undoes scale, then rotate, then translate", "[elaborate
   CHECK(glm::length(r * glm::dvec3(1, 1, 1) - glm::dvec3(1, 1, 1)) < 1e-15);
 }
 
-TEST_CASE("forty doublings take linear time and space", "[elaborate]") {
+TEST_CASE("forty doublings take linear time and space", "[frontend][elaborate]") {
   for (const bool painted : {false, true}) {
     std::string nodes =
         fmt::format(R"("a0": {{"type": "sphere", "radius": 1{}}})", painted ? R"(, "material": "red")" : "");
@@ -297,7 +297,7 @@ TEST_CASE("forty doublings take linear time and space", "[elaborate]") {
   }
 }
 
-TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
+TEST_CASE("deep nesting and long chains of names elaborate", "[frontend][elaborate]") {
   // Each `onion` adds one level of JSON, each `union` two.
   const auto nested = [](int depth, const std::string& open, const std::string& close) {
     std::string text;
@@ -317,7 +317,7 @@ TEST_CASE("deep nesting and long chains of names elaborate", "[elaborate]") {
   CHECK(e.scene.graph.size() == 2);
 }
 
-TEST_CASE("a long cycle is found without deep recursion", "[elaborate]") {
+TEST_CASE("a long cycle is found without deep recursion", "[frontend][elaborate]") {
   std::string text = R"({"version": 1, "objects": [{"use": "a0"}], "nodes": {)";
   const int length = scaled_cases(100000);
   for (int i = 0; i < length; ++i)
@@ -332,7 +332,7 @@ TEST_CASE("a long cycle is found without deep recursion", "[elaborate]") {
   CHECK(diagnostics.all()[0].message.size() < 200);
 }
 
-TEST_CASE("every synonym leads to the right word", "[elaborate]") {
+TEST_CASE("every synonym leads to the right word", "[frontend][elaborate]") {
   const std::pair<const char*, const char*> cases[] = {
       {R"({"type": "subtract"})", "`subtraction`"},
       {R"({"type": "difference"})", "`subtraction`"},
@@ -353,7 +353,7 @@ TEST_CASE("every synonym leads to the right word", "[elaborate]") {
   }
 }
 
-TEST_CASE("records name every property once", "[elaborate]") {
+TEST_CASE("records name every property once", "[frontend][elaborate]") {
   std::vector<const RecordSpec*> records = {&scene_record(),    &film_record(), &render_record(),
                                             &rotation_record(), &use_record(),  &parameter_record()};
   for (const RecordSpec& r : light_records()) records.push_back(&r);

@@ -50,7 +50,7 @@ double another_value(const MaterialParameter& row) {
   return row.domain == ParameterDomain::Share ? 0.5 + row.value / 4 : 2 + row.value;
 }
 
-TEST_CASE("materials: a row of the table has a member, a property and its short name", "[materials]") {
+TEST_CASE("materials: a row of the table has a member, a property and its short name", "[frontend][material]") {
   for (const MaterialParameter& row : kMaterialParameters) {
     CAPTURE(row.name);
     CHECK(value_of(MaterialNumbers(), row) == glm::dvec3(row.value));
@@ -89,7 +89,8 @@ std::map<std::string, DocumentedProperty> documented_properties() {
   return rows;
 }
 
-TEST_CASE("materials: docs/reference/materials.md has the properties of principled materials and their defaults", "[materials]") {
+TEST_CASE("materials: docs/reference/materials.md has the properties of principled materials and their defaults",
+          "[frontend][material]") {
   std::map<std::string, DocumentedProperty> documented = documented_properties();
   const RecordSpec& principled = material_records().back();
   std::map<std::string_view, std::string_view> aliases;
@@ -108,7 +109,7 @@ TEST_CASE("materials: docs/reference/materials.md has the properties of principl
   CHECK(documented.empty());
 }
 
-TEST_CASE("materials: without properties a principled one has OpenPBR's defaults", "[materials]") {
+TEST_CASE("materials: without properties a principled one has OpenPBR's defaults", "[frontend][material]") {
   const Material m = material_of(R"({"type": "principled"})");
   CHECK(m.type == Material::Type::Principled);
   check_same_numbers(m, MaterialNumbers());
@@ -120,7 +121,7 @@ TEST_CASE("materials: without properties a principled one has OpenPBR's defaults
   CHECK(!emits(m));
 }
 
-TEST_CASE("materials: full names and short ones are the same", "[materials]") {
+TEST_CASE("materials: full names and short ones are the same", "[frontend][material]") {
   const Material full = material_of(R"({"type": "principled", "base_color": [0.1, 0.2, 0.3], "base_metalness": 0.4,
     "base_diffuse_roughness": 0.5, "specular_roughness": 0.6, "specular_ior": 1.7, "transmission_weight": 0.8,
     "coat_weight": 0.9, "emission_color": [1, 2, 3], "geometry_opacity": 0.25, "geometry_thin_walled": true})");
@@ -134,7 +135,7 @@ TEST_CASE("materials: full names and short ones are the same", "[materials]") {
   CHECK(brief.thin_walled);
 }
 
-TEST_CASE("materials: light is emission_color times emission_luminance", "[materials]") {
+TEST_CASE("materials: light is emission_color times emission_luminance", "[frontend][material]") {
   const auto radiance = [](const std::string& properties) {
     const Material m = material_of(R"({"type": "principled")" + properties + "}");
     CHECK(emits(m) == (m.emission * m.emission_luminance != glm::dvec3(0)));
@@ -147,7 +148,8 @@ TEST_CASE("materials: light is emission_color times emission_luminance", "[mater
   CHECK(radiance(R"(, "emission": [1, 2, 3], "emission_luminance": 0)") == glm::dvec3(0));
 }
 
-TEST_CASE("materials: gold reflects as its refractive index says, and what is given goes first", "[materials]") {
+TEST_CASE("materials: gold reflects as its refractive index says, and what is given goes first",
+          "[frontend][material]") {
   const Material gold = material_of(R"({"type": "principled", "preset": "gold"})");
   CHECK(gold.metalness == 1);
   CHECK(gold.roughness == 0.3);
@@ -170,7 +172,7 @@ TEST_CASE("materials: gold reflects as its refractive index says, and what is gi
   CHECK(water.priority == 3);
 }
 
-TEST_CASE("materials: presets are known properties within their ranges", "[materials]") {
+TEST_CASE("materials: presets are known properties within their ranges", "[frontend][material]") {
   std::set<std::string_view> names;
   const RecordSpec& row = material_records().back();
   for (const MaterialPreset& preset : material_presets()) {
@@ -186,7 +188,7 @@ TEST_CASE("materials: presets are known properties within their ranges", "[mater
   }
 }
 
-TEST_CASE("materials: a conductor's reflectance is Fresnel's", "[materials]") {
+TEST_CASE("materials: a conductor's reflectance is Fresnel's", "[frontend][material]") {
   // Without absorption the formula is a dielectric's: glass reflects 4 % at normal incidence and everything at
   // grazing incidence.
   CHECK(conductor_reflectance(1, 1.5, 0) == Approx(0.04));
@@ -197,7 +199,7 @@ TEST_CASE("materials: a conductor's reflectance is Fresnel's", "[materials]") {
   CHECK(conductor_reflectance(1, 0.2, 3) == Approx((0.64 + 9) / (1.44 + 9)));
 }
 
-TEST_CASE("materials: the four plain types read as before", "[materials]") {
+TEST_CASE("materials: the four plain types read as before", "[frontend][material]") {
   CHECK(material_of(R"({"type": "diffuse", "color": [0.1, 0.2, 0.3]})").color == glm::dvec3(0.1, 0.2, 0.3));
   const Material lamp = material_of(R"({"type": "emissive"})");
   CHECK(lamp.emission == glm::dvec3(1));
@@ -210,7 +212,7 @@ TEST_CASE("materials: the four plain types read as before", "[materials]") {
   CHECK(glass.priority == -2);
 }
 
-TEST_CASE("materials: what does not vary is a number", "[materials]") {
+TEST_CASE("materials: what does not vary is a number", "[frontend][material]") {
   CHECK(
       material_of(R"({"type": "diffuse", "color": {"pattern": "checker", "a": 0.5, "b": [0.5, 0.5, 0.5]}})").color ==
       glm::dvec3(0.5));
@@ -220,7 +222,7 @@ TEST_CASE("materials: what does not vary is a number", "[materials]") {
   CHECK(scene.materials[0].color == glm::dvec3(0.25, 0.5, 0.5));
 }
 
-TEST_CASE("materials: patterns become textures, ends first", "[materials]") {
+TEST_CASE("materials: patterns become textures, ends first", "[frontend][material]") {
   const ElaboratedScene scene = scene_of(R"({"type": "principled", "roughness":
       {"pattern": "stripes", "axis": [0, 0, 3], "width": 0.25, "scale": 2, "a": 0.2,
        "b": {"pattern": "noise", "seed": 7, "a": 0.4, "b": "x*x"}},
@@ -248,7 +250,7 @@ TEST_CASE("materials: patterns become textures, ends first", "[materials]") {
   CHECK(noise.b < stripes.b);
 }
 
-TEST_CASE("materials: light that varies counts as light", "[materials]") {
+TEST_CASE("materials: light that varies counts as light", "[frontend][material]") {
   CHECK(emits(scene_of(R"~({"type": "emissive", "emission": "max(x, 0)"})~").materials[0]));
   CHECK(emits(scene_of(R"~({"type": "principled", "emission_luminance": "max(x, 0)"})~").materials[0]));
   CHECK(emits(scene_of(R"({"type": "principled", "emission": ["x", 0, 0]})").materials[0]));

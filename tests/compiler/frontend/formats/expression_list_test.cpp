@@ -53,7 +53,7 @@ double farthest(const CompiledScene& scene, const std::string& text, const std::
 
 }  // namespace
 
-TEST_CASE("every operation of an expression list means what the format says", "[import]") {
+TEST_CASE("every operation of an expression list means what the format says", "[frontend][import]") {
   const char* const unary[] = {"neg", "abs",  "square", "floor", "ceil", "round", "sin",  "cos",
                                "tan", "asin", "acos",   "atan",  "exp",  "not",   "sqrt", "ln"};
   const char* const binary[] = {"add", "sub", "mul", "div", "min", "max", "atan2", "compare", "mod", "and", "or"};
@@ -79,7 +79,7 @@ TEST_CASE("every operation of an expression list means what the format says", "[
   check("x var-x\nm const -0.3\nr mod x m\n" + above);
 }
 
-TEST_CASE("names that formulas cannot have, blanks, comments and line ends", "[import]") {
+TEST_CASE("names that formulas cannot have, blanks, comments and line ends", "[frontend][import]") {
   const std::string text =
       "# names of formulas\r\n\n x \tvar-y  \r\nline2 const 2\ne var-x\n10 mul e line2\na-b add x 10\n#\npi square "
       "a-b";
@@ -87,7 +87,7 @@ TEST_CASE("names that formulas cannot have, blanks, comments and line ends", "[i
   CHECK(farthest(scene, text, random_points(100, 0)) < 1e-12);
 }
 
-TEST_CASE("what is an expression list", "[import]") {
+TEST_CASE("what is an expression list", "[frontend][import]") {
   for (const char* text : {"_0 var-x", "# only a comment", "\n\n# c\n_0 const 1\n", "a frobnicate b", "10 add a b"}) {
     CAPTURE(text);
     CHECK(is_expression_list(text));
@@ -99,7 +99,7 @@ TEST_CASE("what is an expression list", "[import]") {
   }
 }
 
-TEST_CASE("a byte order mark and the extremes of float are read", "[import]") {
+TEST_CASE("a byte order mark and the extremes of float are read", "[frontend][import]") {
   CHECK(compiler::is_expression_list("\xEF\xBB\xBF_0 var-x\n"));
   for (const char* number : {"340282350000000000000000000000000000000", "3.4028235e38", "1e-400", "-1e-45"}) {
     compiler::Diagnostics diagnostics;
@@ -112,7 +112,7 @@ TEST_CASE("a byte order mark and the extremes of float are read", "[import]") {
   CHECK(!compiler::compile(compiler::Source("a.vm", "_0 const 3.41e38\n"), diagnostics));
 }
 
-TEST_CASE("prospero: small, proved, and the same as line by line", "[import][heavy]") {
+TEST_CASE("prospero: small, proved, and the same as line by line", "[frontend][import][heavy]") {
   const std::string text = model("prospero.vm");
   const CompiledScene scene = compiled(text);
   CHECK(scene.node_count <= 7591);
@@ -121,12 +121,12 @@ TEST_CASE("prospero: small, proved, and the same as line by line", "[import][hea
   CHECK(farthest(scene, text, random_points(2'000, 0)) < 1e-13);
 }
 
-TEST_CASE("prospero at thirty thousand points", "[import][heavy]") {
+TEST_CASE("prospero at thirty thousand points", "[frontend][import][heavy]") {
   const std::string text = model("prospero.vm");
   CHECK(farthest(compiled(text), text, random_points(30'000, 0)) < 1e-13);
 }
 
-TEST_CASE("the box of a drawing never shows at z = 0", "[import]") {
+TEST_CASE("the box of a drawing never shows at z = 0", "[frontend][import]") {
   for (const char* name : {"prospero.vm", "hi.vm"}) {
     const std::string text = model(name);
     std::vector<glm::dvec3> points;
@@ -141,7 +141,7 @@ TEST_CASE("the box of a drawing never shows at z = 0", "[import]") {
   CHECK(farthest(compiled(slope), slope, {{0, 0, 0}, {0.5, 0.5, 0}, {1, 1, 0}}) < 1e-9);
 }
 
-TEST_CASE("an expression list written as a scene is the same scene", "[import]") {
+TEST_CASE("an expression list written as a scene is the same scene", "[frontend][import]") {
   for (const char* name : {"prospero.vm", "hi.vm"}) {
     std::string written, again;
     const CompiledScene direct = compiled(model(name), written);

@@ -117,7 +117,7 @@ const char* const kRoundBox =
 
 }  // namespace
 
-TEST_CASE("primitives of nested nodes under every kind of matrix", "[import]") {
+TEST_CASE("primitives of nested nodes under every kind of matrix", "[frontend][import]") {
   for (const char* shape : {kSphere, kCylinder, kCone, kBox, kRoundBox}) {
     for (const char* matrix : {kTurn, kHalfTurn, kMirror}) {
       CAPTURE(shape, matrix);
@@ -126,7 +126,7 @@ TEST_CASE("primitives of nested nodes under every kind of matrix", "[import]") {
   }
 }
 
-TEST_CASE("operators of nested nodes, matrices within matrices", "[import]") {
+TEST_CASE("operators of nested nodes, matrices within matrices", "[frontend][import]") {
   for (const char* mode : {"union", "sub", "inter"}) {
     for (const double k : {0.0, 0.2}) {
       CAPTURE(mode, k);
@@ -138,7 +138,7 @@ TEST_CASE("operators of nested nodes, matrices within matrices", "[import]") {
   }
 }
 
-TEST_CASE("colours are materials", "[import]") {
+TEST_CASE("colours are materials", "[frontend][import]") {
   const CompiledScene scene =
       compiled(join("union", 0.1, kTurn, primitive(kSphere, kTurn), primitive(kSphere, kMirror, "[0, 0.5, 1]")));
   REQUIRE(scene.materials.size() == 2);
@@ -147,7 +147,7 @@ TEST_CASE("colours are materials", "[import]") {
   CHECK(scene.surfaces.size() == 2);
 }
 
-TEST_CASE("the molecule is what its file says", "[import]") {
+TEST_CASE("the molecule is what its file says", "[frontend][import]") {
   // Chains of 1000 blends: the reference sums them in another form.
   CHECK(farthest(molecule(), test::scaled_cases(200)) < 1e-6);
   const CompiledScene scene = compiled(molecule());
@@ -155,7 +155,7 @@ TEST_CASE("the molecule is what its file says", "[import]") {
   CHECK(scene.lipschitz < 1.001);
 }
 
-TEST_CASE("nested nodes written as a scene are the same scene", "[import]") {
+TEST_CASE("nested nodes written as a scene are the same scene", "[frontend][import]") {
   // Chains whose right operand is the rest, with changing blend widths, become named parts.
   std::string deep = primitive(kSphere, kTurn);
   for (int i = 0; i < 1300; ++i) {

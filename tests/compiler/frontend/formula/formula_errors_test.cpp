@@ -38,7 +38,7 @@ void check_wrong(const Wrong& wrong, const Diagnostics& diagnostics) {
   CHECK(help.find(wrong.help) != std::string::npos);
 }
 
-TEST_CASE("formula: errors are where they are", "[formula]") {
+TEST_CASE("formula: errors are where they are", "[frontend][formula]") {
   const Wrong cases[] = {
       {"", "E0401", "\"", "an empty formula"},
       {"   ", "E0401", "\"", "the formula ends too early"},
@@ -98,13 +98,13 @@ TEST_CASE("formula: errors are where they are", "[formula]") {
   }
 }
 
-TEST_CASE("formula: several unknown words are several errors", "[formula]") {
+TEST_CASE("formula: several unknown words are several errors", "[frontend][formula]") {
   Diagnostics diagnostics;
   CHECK(!read_formula(in_quotes("aa + bb*cc(dd)"), some_scope(), constant_functions(), diagnostics));
   CHECK(diagnostics.errors() == 4);
 }
 
-TEST_CASE("formula: with escapes the whole string is marked", "[formula]") {
+TEST_CASE("formula: with escapes the whole string is marked", "[frontend][formula]") {
   const Value value{{10, 20}, std::string("x + q")};  // longer in the file than its characters
   Diagnostics diagnostics;
   CHECK(!read_formula(value, some_scope(), constant_functions(), diagnostics));
@@ -112,7 +112,7 @@ TEST_CASE("formula: with escapes the whole string is marked", "[formula]") {
   CHECK((diagnostics.all()[0].span.begin == 10 && diagnostics.all()[0].span.end == 20));
 }
 
-TEST_CASE("formula: without a point there are no coordinates", "[formula]") {
+TEST_CASE("formula: without a point there are no coordinates", "[frontend][formula]") {
   for (const char* axis : {"x", "y", "z"}) {
     Diagnostics diagnostics;
     CHECK(!read_number(in_quotes(fmt::format("1 + {}", axis)), some_scope(), diagnostics));
@@ -121,7 +121,7 @@ TEST_CASE("formula: without a point there are no coordinates", "[formula]") {
   }
 }
 
-TEST_CASE("formula: parameters that are not known", "[formula]") {
+TEST_CASE("formula: parameters that are not known", "[frontend][formula]") {
   Scope scope = scope_of({{"r", 1}});
   scope.declare("later", {});
   scope.declare("broken", {});
@@ -133,7 +133,7 @@ TEST_CASE("formula: parameters that are not known", "[formula]") {
   check_wrong({"r + later", "E0402", "later", "`later` has no value yet"}, diagnostics);
 }
 
-TEST_CASE("formula: wrong lines", "[formula]") {
+TEST_CASE("formula: wrong lines", "[frontend][formula]") {
   struct Case {
     std::vector<std::string> lines;
     const char* code;
@@ -167,7 +167,7 @@ TEST_CASE("formula: wrong lines", "[formula]") {
   }
 }
 
-TEST_CASE("formula: what is no string and no list of strings", "[formula]") {
+TEST_CASE("formula: what is no string and no list of strings", "[frontend][formula]") {
   const auto refused = [](Value value) {
     Diagnostics diagnostics;
     CHECK(!read_formula(value, some_scope(), constant_functions(), diagnostics));

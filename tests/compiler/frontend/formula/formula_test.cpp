@@ -94,7 +94,7 @@ std::string print(const Formula& formula) {
 }
 std::string made_of(const std::string& text) { return print(read(text)); }
 
-TEST_CASE("formula: numbers", "[formula]") {
+TEST_CASE("formula: numbers", "[frontend][formula]") {
   CHECK(value_of("0") == 0);
   CHECK(value_of(" 12.25 ") == 12.25);
   CHECK(value_of(".5") == 0.5);
@@ -108,7 +108,7 @@ TEST_CASE("formula: numbers", "[formula]") {
   CHECK(value_of("r") == 0.5);
 }
 
-TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[formula]") {
+TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[frontend][formula]") {
   CHECK(made_of("noise(x, 2*y, z + 1)") == "noise(x, multiply(2, y), add(z, 1))");
   CHECK(made_of("fbm(x, y, z, 1)") == "noise(x, y, z)");
   CHECK(made_of("fbm(x, 0, y, n - 1)") ==
@@ -130,7 +130,7 @@ TEST_CASE("formula: noise is the machine's, fbm a sum of it", "[formula]") {
   }
 }
 
-TEST_CASE("formula: no two octaves of fbm are 0 at one place", "[formula]") {
+TEST_CASE("formula: no two octaves of fbm are 0 at one place", "[frontend][formula]") {
   // Along each axis, if octave j is at an integer coordinate, octave k > j is not.
   for (const double apart : {37.0 / 16, 55.0 / 16, 91.0 / 16}) {
     const auto offset = [&](int k) { return k == 0 ? 0 : (2 * k + 1) * apart; };
@@ -143,7 +143,7 @@ TEST_CASE("formula: no two octaves of fbm are 0 at one place", "[formula]") {
   }
 }
 
-TEST_CASE("formula: precedence and associativity", "[formula]") {
+TEST_CASE("formula: precedence and associativity", "[frontend][formula]") {
   CHECK(made_of("x + y*z") == "add(x, multiply(y, z))");
   CHECK(made_of("(x + y)*z") == "multiply(add(x, y), z)");
   CHECK(made_of("x - y - z") == "minus(minus(x, y), z)");
@@ -165,7 +165,7 @@ TEST_CASE("formula: precedence and associativity", "[formula]") {
   CHECK(value_of("--3") == 3);
 }
 
-TEST_CASE("formula: powers", "[formula]") {
+TEST_CASE("formula: powers", "[frontend][formula]") {
   CHECK(made_of("x^0") == "1");
   CHECK(made_of("x^1") == "x");
   CHECK(made_of("x^2") == "square(x)");
@@ -187,7 +187,7 @@ TEST_CASE("formula: powers", "[formula]") {
   }
 }
 
-TEST_CASE("formula: every function of one and two numbers", "[formula]") {
+TEST_CASE("formula: every function of one and two numbers", "[frontend][formula]") {
   CHECK(value_of("abs(-2)") == 2);
   CHECK(value_of("square(3)") == 9);
   CHECK(value_of("sqrt(2)") == std::sqrt(2.0));
@@ -214,7 +214,7 @@ TEST_CASE("formula: every function of one and two numbers", "[formula]") {
   }
 }
 
-TEST_CASE("formula: functions made of others", "[formula]") {
+TEST_CASE("formula: functions made of others", "[frontend][formula]") {
   CHECK(made_of("clamp(x, y, z)") == "min(max(x, y), z)");
   CHECK(made_of("mix(x, y, z)") == "add(x, multiply(minus(y, x), z))");
   CHECK(made_of("length(x, y)") == "sqrt(add(square(x), square(y)))");
@@ -229,7 +229,7 @@ TEST_CASE("formula: functions made of others", "[formula]") {
   CHECK(value_of("length(3, 4)") == 5);
 }
 
-TEST_CASE("formula: the machine's function comes before one made of others", "[formula]") {
+TEST_CASE("formula: the machine's function comes before one made of others", "[frontend][formula]") {
   const FunctionSpec machine[] = {{"sin", 1}, {"cos", 1}, {"clamp", 3}};
   const auto with = [&](const std::string& text) {
     Diagnostics diagnostics;
@@ -242,7 +242,7 @@ TEST_CASE("formula: the machine's function comes before one made of others", "[f
   CHECK(with("tan(x)") == "divide(sin(x), cos(x))");
 }
 
-TEST_CASE("formula: what is used twice is one node", "[formula]") {
+TEST_CASE("formula: what is used twice is one node", "[frontend][formula]") {
   const Formula mixed = read("mix(sin(x), y, z)");  // x, sin, y, z, minus, multiply, add
   CHECK(mixed.nodes.size() == 7);
   const Formula power = read("sin(x)^3");  // x, sin, square, multiply
@@ -254,7 +254,8 @@ TEST_CASE("formula: what is used twice is one node", "[formula]") {
   CHECK(lines.nodes.size() == 9);  // x, x^2, z, z^2, +, sqrt, sin, *, +
 }
 
-TEST_CASE("formula: arguments stand before what they are arguments of, and nothing is left over", "[formula]") {
+TEST_CASE("formula: arguments stand before what they are arguments of, and nothing is left over",
+          "[frontend][formula]") {
   const Formula formula = read_lines({"unused = sin(x)", "d = 2*r + 1", "smoothstep(0, d, length(x, y, z))*x"});
   std::vector<int> uses(formula.nodes.size(), 0);
   for (std::uint32_t i = 0; i < formula.nodes.size(); ++i) {
@@ -266,7 +267,7 @@ TEST_CASE("formula: arguments stand before what they are arguments of, and nothi
   for (std::size_t i = 0; i + 1 < uses.size(); ++i) CHECK(uses[i] > 0);
 }
 
-TEST_CASE("formula: constants are folded", "[formula]") {
+TEST_CASE("formula: constants are folded", "[frontend][formula]") {
   CHECK(made_of("2*r + 1") == "2");
   CHECK(made_of("x*(2*r + 1)") == "multiply(x, 2)");
   CHECK(made_of("x*sqrt(4)") == "multiply(x, 2)");
@@ -276,7 +277,7 @@ TEST_CASE("formula: constants are folded", "[formula]") {
   CHECK(evaluate(by_hand) == 6);
 }
 
-TEST_CASE("formula: spans are those of the text", "[formula]") {
+TEST_CASE("formula: spans are those of the text", "[frontend][formula]") {
   const std::string text = "x + sin(y)*2";
   const Formula formula = read(text);
   std::vector<std::string> parts;
@@ -286,7 +287,7 @@ TEST_CASE("formula: spans are those of the text", "[formula]") {
   CHECK(parts == std::vector<std::string>{"x", "y", "sin(y)", "2", "sin(y)*2", "x + sin(y)*2"});
 }
 
-TEST_CASE("formula: nesting ends at a limit, length does not", "[formula]") {
+TEST_CASE("formula: nesting ends at a limit, length does not", "[frontend][formula]") {
   const auto times = [](std::size_t count, const std::string& text) {
     std::string out;
     for (std::size_t i = 0; i < count; ++i) out += text;
@@ -310,7 +311,7 @@ TEST_CASE("formula: nesting ends at a limit, length does not", "[formula]") {
   CHECK(value_of("1" + times(100000, "*1")) == 1);
 }
 
-TEST_CASE("formula: names of parameters", "[formula]") {
+TEST_CASE("formula: names of parameters", "[frontend][formula]") {
   for (const char* good : {"r", "wall_thickness", "_a", "R2", "X"}) {
     CHECK(misfit_name(good, formula_functions(constant_functions())) == "");
   }

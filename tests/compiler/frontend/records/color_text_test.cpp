@@ -24,7 +24,7 @@ std::string extruded(const std::string& translate) {
 
 }  // namespace
 
-TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[elaborate]") {
+TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[frontend][elaborate]") {
   CHECK(color_of(R"("#000000")") == glm::dvec3(0));
   CHECK(color_of(R"("#ffffff")") == glm::dvec3(1));
   CHECK(color_of(R"("#FFF")") == glm::dvec3(1));
@@ -35,7 +35,7 @@ TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[elabor
   CHECK(color.b == Approx(0.05126945837404324).epsilon(1e-12));
 }
 
-TEST_CASE("an outline is moved by two numbers as by three of which the last is 0", "[elaborate]") {
+TEST_CASE("an outline is moved by two numbers as by three of which the last is 0", "[frontend][elaborate]") {
   CHECK(extruded(R"([1, "2 + 1"])") == extruded("[1, 3, 0]"));
 }
 

@@ -20,7 +20,7 @@ namespace {
 using namespace fathom::compiler;
 using namespace fathom::test;
 
-TEST_CASE("numbers that JSON cannot hold are refused all the same", "[elaborate]") {
+TEST_CASE("numbers that JSON cannot hold are refused all the same", "[frontend][elaborate]") {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const Source source("scene.json", R"({"version": 1, "objects": [{"type": "sphere", "radius": 1}]})");
     Diagnostics diagnostics;
@@ -62,7 +62,7 @@ std::string every_number(bool formulas) {
   return "{" + text + "}";
 }
 
-TEST_CASE("formulas stand wherever numbers do", "[elaborate]") {
+TEST_CASE("formulas stand wherever numbers do", "[frontend][elaborate]") {
   const ElaboratedScene a = elaborated(every_number(false)), b = elaborated(every_number(true));
   CHECK(listing(a) == listing(b));
   CHECK(listing(b).find("sphere radius=2") != std::string::npos);
@@ -83,7 +83,7 @@ TEST_CASE("formulas stand wherever numbers do", "[elaborate]") {
             .camera.width == 6);
 }
 
-TEST_CASE("parameters have values, bounds and defaults", "[elaborate]") {
+TEST_CASE("parameters have values, bounds and defaults", "[frontend][elaborate]") {
   const std::string text = R"({"version": 1, "params": {
       "r": {"default": 0.5, "min": 0, "max": "2*2", "doc": "of the ball"},
       "d": "2*r", "h": {"default": "d + 1", "min": "d"}, "k": -3},
@@ -101,7 +101,7 @@ TEST_CASE("parameters have values, bounds and defaults", "[elaborate]") {
   CHECK(listing(given).starts_with("%0 = cylinder radius=4 half_height=9\n"));
 }
 
-TEST_CASE("a parameter in error is one error, wherever it is used", "[elaborate]") {
+TEST_CASE("a parameter in error is one error, wherever it is used", "[frontend][elaborate]") {
   const Source source("scene.json", R"({"version": 1, "params": {"r": "1 +", "s": "2*r"}, "objects": [
       {"type": "sphere", "radius": "r"}, {"type": "round_box", "half_size": ["s", 1, 1], "radius": "r"}]})");
   Diagnostics diagnostics;
@@ -110,7 +110,7 @@ TEST_CASE("a parameter in error is one error, wherever it is used", "[elaborate]
   CHECK(source.text()[diagnostics.all()[0].span.begin - 1] == '+');
 }
 
-TEST_CASE("formulas in lists of points, and what is no list of numbers", "[elaborate]") {
+TEST_CASE("formulas in lists of points, and what is no list of numbers", "[frontend][elaborate]") {
   Diagnostics diagnostics;
   const auto in = [&](const char* json) { return std::move(read_json(Source("", json), diagnostics)->root); };
   const syntax::Value points = in(R"([[0, "2 - 3"], [1, 0], ["2^3", 1]])");
@@ -129,7 +129,7 @@ TEST_CASE("formulas in lists of points, and what is no list of numbers", "[elabo
   CHECK(diagnostics.all().empty());
 }
 
-TEST_CASE("no formula where no number is wanted", "[elaborate]") {
+TEST_CASE("no formula where no number is wanted", "[frontend][elaborate]") {
   const ElaboratedScene e = of_objects(R"({"name": "1 +", "type": "sphere", "radius": 1, "material": "2*r"})",
                                        R"(, "materials": {"2*r": {"type": "diffuse"}}, "$schema": "1 +")");
   CHECK(surfaces(e) == "1 +:2*r ");

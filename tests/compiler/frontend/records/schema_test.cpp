@@ -101,7 +101,7 @@ void compare(const json& scene) {
 
 }  // namespace
 
-TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][schema]") {
+TEST_CASE("schema: every scene that comes with the program is valid", "[frontend][heavy][schema]") {
   int scenes = 0;
   for (const auto& entry : fs::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
@@ -112,7 +112,7 @@ TEST_CASE("schema: every scene that comes with the program is valid", "[heavy][s
   CHECK(scenes > 5);
 }
 
-TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyond a schema", "[schema]") {
+TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyond a schema", "[frontend][schema]") {
   for (const fs::path& path : golden_files("diagnostics")) {
     const std::string name = path.filename().string(), whole = read_file(path);
     if (name.starts_with("layout") || name.starts_with("E07")) continue;  // E07xx are for listings
@@ -132,7 +132,7 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
 
 // Changes each property of every record of two scenes in turn: removed, misnamed, and with values of other types and
 // sizes.
-TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[heavy][schema]") {
+TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[frontend][heavy][schema]") {
   json scene = parse(read_file(fs::path(FATHOM_SOURCE_DIR) / "scenes/primitives.json"));
   scene["camera"]["type"] = "perspective";
   scene["render"] = {{"spp", 1}, {"rr_depth", 0}, {"tile", 8}, {"seed", 3}, {"far", 100}, {"noise_threshold", 0.1}};
@@ -165,7 +165,8 @@ TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[
 }
 
 // A row of the document is a line "| `type`, `type` | parameters |".
-TEST_CASE("docs/reference/scene-file.md has a row for every type of node, with its parameters", "[schema]") {
+TEST_CASE("docs/reference/scene-file.md has a row for every type of node, with its parameters",
+          "[frontend][schema]") {
   std::stringstream page(read_file(FATHOM_SOURCE_DIR "/docs/reference/scene-file.md"));
   std::vector<std::pair<std::string, std::string>> rows;
   for (std::string line; std::getline(page, line);) {
@@ -186,7 +187,7 @@ TEST_CASE("docs/reference/scene-file.md has a row for every type of node, with i
   }
 }
 
-TEST_CASE("schema: every property of the tables is described", "[schema]") {
+TEST_CASE("schema: every property of the tables is described", "[frontend][schema]") {
   json copy = schema();
   for_each_value(copy, [](json& value) {
     if (!value.is_object() || !value.contains("properties") || !value["properties"].is_object()) return;

@@ -63,7 +63,7 @@ void check_spans(const Source& source, const syntax::Value& value) {
   }
 }
 
-TEST_CASE("every value has its exact span", "[json]") {
+TEST_CASE("every value has its exact span", "[frontend][json]") {
   for (const char* text : {
            R"({"a": 1, "b": [1,2 , 3.5e2], "c": {"d": null}, "e": true,"f":false})",
            R"([1,-2,3e4,0.5 ,[ ],{ },"x"])",
@@ -87,7 +87,7 @@ TEST_CASE("every value has its exact span", "[json]") {
   }
 }
 
-TEST_CASE("numbers end where they end, whatever follows", "[json]") {
+TEST_CASE("numbers end where they end, whatever follows", "[frontend][json]") {
   for (const char* separator : {"", " ", "\n", "\r\n", "\t", "//", "/**/", "// 1"}) {
     const Source source("scene.json", std::string("-1.5e1") + separator);
     const syntax::File file = read(source);
@@ -96,7 +96,7 @@ TEST_CASE("numbers end where they end, whatever follows", "[json]") {
   }
 }
 
-TEST_CASE("positions count code points, and a tab as one", "[json]") {
+TEST_CASE("positions count code points, and a tab as one", "[frontend][json]") {
   const Source source("scene.json", "{\r\n\t\"größe\":\t\"∅\", \"x\": 1}");
   const syntax::File file = read(source);
   const Position x = source.locate(record(file.root).find("x")->name_span.begin);
@@ -107,7 +107,7 @@ TEST_CASE("positions count code points, and a tab as one", "[json]") {
   CHECK(source.line(3) == "");
 }
 
-TEST_CASE("values are read as written", "[json]") {
+TEST_CASE("values are read as written", "[frontend][json]") {
   const Source source("scene.json",
                       R"({"a": 9007199254740993, "b": -3, "c": 18446744073709551616, "d": "\u00fc\\\ud834\udd1e"})");
   const syntax::File file = read(source);
@@ -119,7 +119,7 @@ TEST_CASE("values are read as written", "[json]") {
   CHECK(record(file.root).find("e") == nullptr);
 }
 
-TEST_CASE("print_syntax shows the structure", "[json]") {
+TEST_CASE("print_syntax shows the structure", "[frontend][json]") {
   const Source source("scene.json",
                       R"({"version": 1, "$schema": null, "nodes": {}, "a b": "x\"y", "m": [[1, 2], [true]],
     "objects": [{"type": "sphere", "radius": 0.1, "of": [{"use": "b"}]}, 5]})");
@@ -141,7 +141,7 @@ TEST_CASE("print_syntax shows the structure", "[json]") {
         "  - 5\n");
 }
 
-TEST_CASE("nesting up to the limit is read, one more is an error", "[json]") {
+TEST_CASE("nesting up to the limit is read, one more is an error", "[frontend][json]") {
   const auto nested = [](int depth) {
     return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
   };
@@ -153,7 +153,7 @@ TEST_CASE("nesting up to the limit is read, one more is an error", "[json]") {
   CHECK(!print_syntax(read(deep)).empty());
 }
 
-TEST_CASE("all duplicates are reported, and the first value of a name is kept", "[json]") {
+TEST_CASE("all duplicates are reported, and the first value of a name is kept", "[frontend][json]") {
   const Source source("scene.json", R"({"a": 1, "b": {"c": 1, "c": 2, "c": 3}, "a": 4, "d": 5})");
   Diagnostics diagnostics;
   const auto file = read_json(source, diagnostics);
@@ -165,7 +165,7 @@ TEST_CASE("all duplicates are reported, and the first value of a name is kept", 
   CHECK(record(*record(file->root).find("b")->value).properties.size() == 1);
 }
 
-TEST_CASE("what is not JSON is one error of the right kind", "[json]") {
+TEST_CASE("what is not JSON is one error of the right kind", "[frontend][json]") {
   const std::pair<const char*, const char*> cases[] = {
       {"", "E0002"},
       {" \n// only a comment", "E0002"},
@@ -241,7 +241,7 @@ TEST_CASE("what is not JSON is one error of the right kind", "[json]") {
   CHECK(first_code(std::string("[1]\0[", 5)) == "E0007");
 }
 
-TEST_CASE("an error's place lies in the file, wherever it is cut short", "[json]") {
+TEST_CASE("an error's place lies in the file, wherever it is cut short", "[frontend][json]") {
   const std::string whole = "{\"a\": [1, -2.5e3, \"x\\u00fc\\\\\", {\"b\": null}], // c\n \"d\": /* e */ true}";
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const Source source("scene.json", whole.substr(0, length));

@@ -35,7 +35,7 @@ std::string there_and_back(const syntax::File& file, const std::string& json) {
   return canonical(kept->file.root);
 }
 
-TEST_CASE("text: documents come back from text as they were", "[text]") {
+TEST_CASE("text: documents come back from text as they were", "[frontend][text]") {
   const char* count = std::getenv("FATHOM_DOCUMENTS");  // 10,000 take 20 seconds
   const int documents = count ? std::atoi(count) : test::scaled_cases(1000);
   for (int i = 0; i < documents; ++i) {
@@ -57,7 +57,7 @@ std::string digest_of(const Source& source) {
 }
 
 // The conversion to JSON expands loops and functions, and keeps formulas and parameters.
-TEST_CASE("text: the JSON scene of a text is the same scene", "[text]") {
+TEST_CASE("text: the JSON scene of a text is the same scene", "[frontend][text]") {
   const char* const texts[] = {
       "param n = 7\nobject \"posts\" [for i in 0..n: cylinder(0.1 + 0.02*i, random(i)).translate([i, 0, 0])]",
       "param r(min = 0.1) = 0.5\nlet d = 2*r\nobject sphere(d + 1/3).translate([d^2, sqrt(r), -r])",
@@ -78,7 +78,8 @@ TEST_CASE("text: the JSON scene of a text is the same scene", "[text]") {
   }
 }
 
-TEST_CASE("text: the project's scenes come back as they were, and are one scene in both notations", "[text]") {
+TEST_CASE("text: the project's scenes come back as they were, and are one scene in both notations",
+          "[frontend][text]") {
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".json") continue;
@@ -95,7 +96,7 @@ TEST_CASE("text: the project's scenes come back as they were, and are one scene 
   CHECK(scenes > 20);
 }
 
-TEST_CASE("text: the project's texts are one scene as JSON", "[text][released]") {
+TEST_CASE("text: the project's texts are one scene as JSON", "[frontend][text][released]") {
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(FATHOM_SOURCE_DIR "/scenes")) {
     if (entry.path().extension() != ".fathom") continue;
@@ -111,7 +112,7 @@ TEST_CASE("text: the project's texts are one scene as JSON", "[text][released]")
   CHECK(scenes >= 2);
 }
 
-TEST_CASE("text: noise the pattern and noise the function are told apart, there and back", "[text]") {
+TEST_CASE("text: noise the pattern and noise the function are told apart, there and back", "[frontend][text]") {
   Source source("a.fathom", R"(fathom 1
 param height = 0.5
 param octaves = 5

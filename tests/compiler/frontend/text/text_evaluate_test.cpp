@@ -36,7 +36,7 @@ std::string radius(const std::string& expression, const std::string& before = ""
   return scene.substr(at, scene.find(", \"name\"") - at);
 }
 
-TEST_CASE("text: arithmetic, comparisons and conditions", "[text]") {
+TEST_CASE("text: arithmetic, comparisons and conditions", "[frontend][text]") {
   CHECK(radius("1 + 2*3 - 4/2") == "5");
   CHECK(radius("2^3^2") == "512");
   CHECK(radius("-2^2 + 8") == "4");
@@ -53,7 +53,7 @@ TEST_CASE("text: arithmetic, comparisons and conditions", "[text]") {
   CHECK(radius("round(2.6)") == "3");
 }
 
-TEST_CASE("text: functions, loops and folds", "[text]") {
+TEST_CASE("text: functions, loops and folds", "[frontend][text]") {
   CHECK(radius("f(2)", "def f(a, b = a + 1) = a*b") == "6");
   CHECK(radius("f(b = 5, a = 2)", "def f(a, b = a + 1) = a*b") == "10");
   CHECK(radius("fold sum = 0 for i in 1..5: sum + i") == "10");
@@ -63,13 +63,13 @@ TEST_CASE("text: functions, loops and folds", "[text]") {
 }
 
 // Values of the published generator. Other values would change scenes.
-TEST_CASE("text: random numbers are those of SplitMix64", "[text]") {
+TEST_CASE("text: random numbers are those of SplitMix64", "[frontend][text]") {
   CHECK(radius("random(0)") == "0.8833108082136426");
   CHECK(radius("random(1, 2, 3)") == "0.4175580595044027");
   CHECK(radius("random(-5)") == "0.08865044484243612");
 }
 
-TEST_CASE("text: nodes are joined, placed and shared as JSON has them", "[text]") {
+TEST_CASE("text: nodes are joined, placed and shared as JSON has them", "[frontend][text]") {
   CHECK(scene_of("object sphere(1) + box([1, 1, 1]) + sphere(2)") ==
         R"("objects": [ { "type": "union", "of": [{"type": "sphere", "radius": 1}, {"type": "box", "half_size": [1, 1, 1]}, {"type": "sphere", "radius": 2}] } ])");
   CHECK(scene_of("object (sphere(1) -{0.1} sphere(2)) & sphere(3)") ==
@@ -87,13 +87,13 @@ TEST_CASE("text: nodes are joined, placed and shared as JSON has them", "[text]"
         R"("objects": [{"type": "sphere", "radius": 1, "name": "a"}, {"type": "sphere", "radius": 2, "name": "a"}])");
 }
 
-TEST_CASE("text: materials have the names they were given, and equal ones are one", "[text]") {
+TEST_CASE("text: materials have the names they were given, and equal ones are one", "[frontend][text]") {
   CHECK(scene_of("let red = diffuse(color = 0.5)\ndef ball(i) = sphere(i).material(diffuse(color = 0.1))\n"
                  "object ball(1).material(red)\nobject ball(2)") ==
         R"("materials": {"red": {"type": "diffuse", "color": 0.5}, "material": {"type": "diffuse", "color": 0.1}}, "objects": [ {"type": "union", "of": [{"type": "sphere", "radius": 1, "material": "material"}], "material": "red"}, {"type": "sphere", "radius": 2, "material": "material"} ])");
 }
 
-TEST_CASE("text: parameters decide loops and conditions", "[text]") {
+TEST_CASE("text: parameters decide loops and conditions", "[frontend][text]") {
   const std::string text = "param n = 2\nobject [for i in 0..n: sphere(i + 1)]";
   CHECK(scene_of(text, {{"n", 1}}) ==
         R"("params": {"n": 1}, "objects": [{"type": "union", "of": [{"type": "sphere", "radius": 1}]}])");
@@ -101,7 +101,7 @@ TEST_CASE("text: parameters decide loops and conditions", "[text]") {
 }
 
 // As a tree the scene would have 2^40 leaves.
-TEST_CASE("text: doublings by functions are as many nodes", "[text]") {
+TEST_CASE("text: doublings by functions are as many nodes", "[frontend][text]") {
   std::string text = "def d(part) = part + part.translate([1, 0, 0])\nobject ";
   for (int i = 0; i < 40; ++i) text += "d(";
   text += "sphere(1)" + std::string(40, ')');
@@ -109,13 +109,13 @@ TEST_CASE("text: doublings by functions are as many nodes", "[text]") {
 }
 
 // A loop makes a chain deeper than the scene reader can recurse.
-TEST_CASE("text: deep chains of nodes are named on the way", "[text]") {
+TEST_CASE("text: deep chains of nodes are named on the way", "[frontend][text]") {
   Source source("a.fathom", "fathom 1\nobject fold part = sphere(1) for i in 0..20000: part.onion(1/(i + 2))");
   Diagnostics diagnostics;
   CHECK(compile(source, diagnostics, {}).has_value());
 }
 
-TEST_CASE("text: chains of names are as long as they like", "[text]") {
+TEST_CASE("text: chains of names are as long as they like", "[frontend][text]") {
   std::string text;
   for (int i = 0; i < 20000; ++i) text += fmt::format("let a{} = a{}\n", i, i + 1);
   CHECK(radius("a0", text + "let a20000 = 7") == "7");

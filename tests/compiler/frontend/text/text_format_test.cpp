@@ -58,7 +58,7 @@ std::string scrambled(const std::string& text, test::Random& random) {
   return out;
 }
 
-TEST_CASE("text: the layout changes no token and no comment, and nothing the second time", "[text]") {
+TEST_CASE("text: the layout changes no token and no comment, and nothing the second time", "[frontend][text]") {
   for (int i = 0; i < test::scaled_cases(1000); ++i) {
     test::Random random(static_cast<std::uint64_t>(i));
     const syntax::File file = test::random_document(random);
@@ -70,7 +70,7 @@ TEST_CASE("text: the layout changes no token and no comment, and nothing the sec
   }
 }
 
-TEST_CASE("text: blanks and indentation have one form", "[text]") {
+TEST_CASE("text: blanks and indentation have one form", "[frontend][text]") {
   CHECK(formatted("\n fathom   1\nlet a=-1+2 * b [ 0 ]^ 2\n") == "fathom 1\nlet a = -1 + 2*b[0]^2\n");
   CHECK(formatted("fathom 1\nobject\"a\"(b-c) . scale( 2,)+{ 0.1}d") ==
         "fathom 1\nobject \"a\" (b - c).scale(2,) +{0.1} d\n");

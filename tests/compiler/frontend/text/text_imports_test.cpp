@@ -55,7 +55,7 @@ const Files kFiles = {
     {"lib/b.fathom", "fathom 1\nparam k = 1\nlet cube = box([k, k, k])\nobject cube\nobject sphere(-1)\n"},
 };
 
-TEST_CASE("imports: names of files stand for what they are there", "[text]") {
+TEST_CASE("imports: names of files stand for what they are there", "[frontend][text]") {
   CHECK(json_of("import \"lib/a.fathom\" as a\nobject a.ball(2).material(a.red)", kFiles) ==
         R"({"version":1,"materials":{"red":{"type":"diffuse","color":0.1}},"objects":[{"type":"sphere","radius":2,"material":"red"}]})");
   CHECK(json_of("import \"lib/a.fathom\"(r = 4) as a\nobject a.ball(2)", kFiles) ==
@@ -69,18 +69,18 @@ TEST_CASE("imports: names of files stand for what they are there", "[text]") {
         R"({"version":1,"params":{"s":2},"objects":[{"type":"box","half_size":[6,6,6]}]})");
 }
 
-TEST_CASE("imports: a local name hides a file's", "[text]") {
+TEST_CASE("imports: a local name hides a file's", "[frontend][text]") {
   CHECK(json_of("import \"lib/a.fathom\" as a\nlet b = a.red\nobject [for a in [[1, 2, 3]]: sphere(a.x)].material(b)",
                 kFiles) ==
         R"({"version":1,"materials":{"b":{"type":"diffuse","color":0.1}},"objects":[{"type":"union","of":[{"type":"sphere","radius":1}],"material":"b"}]})");
 }
 
 // The sphere of radius -1 in lib/b.fathom is never evaluated.
-TEST_CASE("imports: of a file only what is asked for is evaluated", "[text]") {
+TEST_CASE("imports: of a file only what is asked for is evaluated", "[frontend][text]") {
   CHECK(json_of("import \"lib/b.fathom\" as b\nobject b.cube", kFiles).starts_with("{"));
 }
 
-TEST_CASE("imports: scenes of other formats", "[text]") {
+TEST_CASE("imports: scenes of other formats", "[frontend][text]") {
   const Files files = {{"ball.json", R"({"version": 1, "params": {"r": 0.5}, "materials": {"red": {"type": "diffuse"}},
     "nodes": {"ball": {"type": "sphere", "radius": "2*r", "material": "red"}}, "objects": [{"use": "ball"}]})"},
                        {"plane.vm", "_0 var-z\n_1 const 1\n_2 sub _0 _1\n"}};
@@ -90,7 +90,7 @@ TEST_CASE("imports: scenes of other formats", "[text]") {
   CHECK(json_of("import \"plane.vm\" as p\nobject p.scene & sphere(1)", files).find("expression") != std::string::npos);
 }
 
-TEST_CASE("imports: there is an end to them", "[text]") {
+TEST_CASE("imports: there is an end to them", "[frontend][text]") {
   Files files;
   std::string many;
   for (int i = 0; i < 300; ++i) {
@@ -116,7 +116,7 @@ TEST_CASE("imports: there is an end to them", "[text]") {
   CHECK(json_of("import \"b\" as b\nimport \"c\" as c\nobject b.s + c.s", circle) == "E0810");
 }
 
-TEST_CASE("imports: the limits are of all files together", "[text]") {
+TEST_CASE("imports: the limits are of all files together", "[frontend][text]") {
   const Files files = {{"b", "fathom 1\n//" + std::string(1000, ' ') + "\nlet s = sphere(1)\n"}};
   for (const double most : {500.0, 2000.0}) {
     Limits limits;
@@ -135,7 +135,7 @@ TEST_CASE("imports: the limits are of all files together", "[text]") {
   CHECK((diagnostics.has_errors() && diagnostics.all()[0].code == "E0008"));
 }
 
-TEST_CASE("imports: compiled files and listings carry them", "[text]") {
+TEST_CASE("imports: compiled files and listings carry them", "[frontend][text]") {
   const std::string text = "fathom 1\nimport \"lib/a.fathom\"(r = 4) as a\nobject a.twice\nobject a.ball(1)\n";
   const auto scene = compiled(text, kFiles);
   const auto bytes = write_file(*scene);
@@ -164,7 +164,7 @@ TEST_CASE("imports: compiled files and listings carry them", "[text]") {
   }
 }
 
-TEST_CASE("imports: instructions tell the file that they are of", "[text]") {
+TEST_CASE("imports: instructions tell the file that they are of", "[frontend][text]") {
   const auto scene = compiled("fathom 1\nimport \"lib/a.fathom\" as a\nobject a.ball(2)\n", kFiles);
   const auto& debug = scene->distance.program().debug;
   REQUIRE(!debug.empty());

@@ -39,7 +39,8 @@ class Frames : public Folder {
   }
 };
 
-TEST_CASE("cli frames: a frame is the still of its time, in either notation, and frame 0 that of the seed itself") {
+TEST_CASE("cli frames: a frame is the still of its time, in either notation, and frame 0 that of the seed itself",
+          "[cli]") {
   const Frames folder;
   const Result result = folder.run("render hop.fathom --frames 0:3 -o out.png");
   INFO(result.err);
@@ -62,7 +63,7 @@ TEST_CASE("cli frames: a frame is the still of its time, in either notation, and
   CHECK(folder.read("seeded.png") == folder.read("out-0002.png"));
 }
 
-TEST_CASE("cli frames: a line for each frame says which of how many, and one closes") {
+TEST_CASE("cli frames: a line for each frame says which of how many, and one closes", "[cli]") {
   const Frames folder;
   const Result result = folder.run("render hop.fathom --frames 4:10:3 -o a.png");
   CHECK(result.code == 0);
@@ -72,7 +73,7 @@ TEST_CASE("cli frames: a line for each frame says which of how many, and one clo
   CHECK(folder.run("render hop.fathom --frames 4 -o a.png -q").err.empty());
 }
 
-TEST_CASE("cli frames: which there are") {
+TEST_CASE("cli frames: which there are", "[cli]") {
   const Frames folder;
   struct Case {
     const char *frames, *files;
@@ -97,7 +98,7 @@ TEST_CASE("cli frames: which there are") {
   }
 }
 
-TEST_CASE("cli frames: files are named by number, in the place of #, before the ending, or in a folder") {
+TEST_CASE("cli frames: files are named by number, in the place of #, before the ending, or in a folder", "[cli]") {
   const Frames folder;
   std::filesystem::create_directory(folder.path() / "dir.d");
   const Result result = folder.run_script(
@@ -119,7 +120,7 @@ TEST_CASE("cli frames: files are named by number, in the place of #, before the 
   CHECK(folder.has("dir.d/out.frames"));
 }
 
-TEST_CASE("cli frames: fps, of the scene or the command line, makes time of frames") {
+TEST_CASE("cli frames: fps, of the scene or the command line, makes time of frames", "[cli]") {
   const Frames folder;
   REQUIRE(folder.run("render hop.json -D time=0.1 -o at.png -q").code == 0);
   for (const char* fps : {"30", "30.0", "60/2", "3e1"}) {
@@ -131,7 +132,7 @@ TEST_CASE("cli frames: fps, of the scene or the command line, makes time of fram
   }
 }
 
-TEST_CASE("cli frames: `frame` is a whole number, and may stand beside `time`") {
+TEST_CASE("cli frames: `frame` is a whole number, and may stand beside `time`", "[cli]") {
   const Frames folder;
   folder.write("both.fathom", R"(fathom 1
 param frame = 0
@@ -147,7 +148,7 @@ object [for i in 0..(frame + 1): sphere(0.3).translate([i - 1, time, 0])]
   CHECK(folder.read("a-0002.png") == folder.read("b.png"));
 }
 
-TEST_CASE("cli frames: a scene that does not move is told how it could") {
+TEST_CASE("cli frames: a scene that does not move is told how it could", "[cli]") {
   const Frames folder;
   const Result json = folder.run("render ball.json --frames 0:2 -o a.png");
   CHECK(json.code == 2);
@@ -161,7 +162,7 @@ TEST_CASE("cli frames: a scene that does not move is told how it could") {
   CHECK_THAT(all.err, Contains("does not say how many there are") && Contains("`frames`"));
 }
 
-TEST_CASE("cli frames: what makes no sense with them is refused, and what they alone have") {
+TEST_CASE("cli frames: what makes no sense with them is refused, and what they alone have", "[cli]") {
   const Frames folder;
   struct Case {
     const char *arguments, *message;
@@ -190,7 +191,7 @@ TEST_CASE("cli frames: what makes no sense with them is refused, and what they a
   CHECK(folder.read("a.frames") == "something of mine");
 }
 
-TEST_CASE("cli frames: programs without their text have no time") {
+TEST_CASE("cli frames: programs without their text have no time", "[cli]") {
   const Frames folder;
   REQUIRE(folder.run("compile hop.json -o hop.fbc -q").code == 0);
   REQUIRE(folder.run("render hop.fbc --frames 1:3 -o fbc.png -q").code == 0);
@@ -204,7 +205,7 @@ TEST_CASE("cli frames: programs without their text have no time") {
   CHECK(folder.read("in-0002.png") == folder.read("json-0002.png"));
 }
 
-TEST_CASE("cli frames: one that has errors ends it with 65 and its number, and check finds it before") {
+TEST_CASE("cli frames: one that has errors ends it with 65 and its number, and check finds it before", "[cli]") {
   const Frames folder;
   folder.write("shrink.json", R"({"version": 1, "params": {"time": 0}, "film": {"width": 4, "height": 4},
     "background": [1, 1, 1], "objects": [{"type": "sphere", "radius": "1 - time"}]})");
@@ -232,7 +233,7 @@ TEST_CASE("cli frames: one that has errors ends it with 65 and its number, and c
   CHECK_THAT(late.err, Contains("`time` must be at most 1") && Contains("frame 2 (2 s)"));
 }
 
-TEST_CASE("cli frames: the same warnings are said once") {
+TEST_CASE("cli frames: the same warnings are said once", "[cli]") {
   const Frames folder;
   folder.write("warned.json", R"({"version": 1, "params": {"time": 0, "idle": 1}, "film": {"width": 2, "height": 2},
     "background": [1, 1, 1], "objects": [{"type": "sphere", "radius": "1 + time"}]})");
@@ -242,7 +243,7 @@ TEST_CASE("cli frames: the same warnings are said once") {
   CHECK(said.find("W0404", first + 1) == std::string::npos);
 }
 
-TEST_CASE("cli frames: --resume leaves what is done and whole, and renders the rest") {
+TEST_CASE("cli frames: --resume leaves what is done and whole, and renders the rest", "[cli]") {
   const Frames folder;
   REQUIRE(folder.run("render hop.fathom --frames 0:4 -o whole.png -q").code == 0);
   REQUIRE(folder.run("render hop.fathom --frames 0:2 -o a.png -q").code == 0);
@@ -281,7 +282,7 @@ TEST_CASE("cli frames: --resume leaves what is done and whole, and renders the r
   CHECK_THAT(none.err, Contains("there is no journal `a.frames`") && Contains("2 rendered"));
 }
 
-TEST_CASE("cli frames: runs of other frames may share a journal") {
+TEST_CASE("cli frames: runs of other frames may share a journal", "[cli]") {
   const Frames folder;
   const Result both = folder.run_script(
       "\"$fathom\" render hop.fathom --frames 0:4 -o a.png -q --threads 1 &\n"
@@ -301,7 +302,7 @@ std::string slow(int samples = 2000) {
   return text;
 }
 
-TEST_CASE("cli frames: a signal keeps the frame under way, and --resume goes on with it") {
+TEST_CASE("cli frames: a signal keeps the frame under way, and --resume goes on with it", "[cli]") {
   const Frames folder;
   // A frame of 2000 samples took 0.06 s on a fast machine: it ended before the shell saw its checkpoint.
   folder.write("slow.fathom", slow(16000));
@@ -327,7 +328,8 @@ TEST_CASE("cli frames: a signal keeps the frame under way, and --resume goes on 
   CHECK_FALSE(folder.has("a-0001.exr.checkpoint"));
 }
 
-TEST_CASE("cli frames: kill -9 and --resume, again and again, give the files of a run that was not disturbed") {
+TEST_CASE("cli frames: kill -9 and --resume, again and again, give the files of a run that was not disturbed",
+          "[cli]") {
   const Frames folder;
   folder.write("slow.fathom", slow());
   REQUIRE(folder.run("render slow.fathom --frames 0:4 -o whole.png -q").code == 0);
@@ -340,7 +342,7 @@ TEST_CASE("cli frames: kill -9 and --resume, again and again, give the files of 
   CHECK(result.out == "a-0000.png\na-0001.png\na-0002.png\na-0003.png\na.frames\n");
 }
 
-TEST_CASE("cli frames: a checkpoint of another render is replaced where nobody named it") {
+TEST_CASE("cli frames: a checkpoint of another render is replaced where nobody named it", "[cli]") {
   const Frames folder;
   folder.write("slow.fathom", slow());
   folder.run_script("timeout -s INT 0.1 \"$fathom\" render slow.fathom --frames 0:3 -o a.png -q");
@@ -350,7 +352,7 @@ TEST_CASE("cli frames: a checkpoint of another render is replaced where nobody n
   CHECK_THAT(result.err, Contains("3 rendered in"));
 }
 
-TEST_CASE("cli frames: a time limit is for all of them, and what is not begun is not written") {
+TEST_CASE("cli frames: a time limit is for all of them, and what is not begun is not written", "[cli]") {
   const Frames folder;
   folder.write("slow.fathom", slow());
   const Result result = folder.run("render slow.fathom --frames 0:90 -o a.png --time-limit 0.2s");
@@ -360,7 +362,7 @@ TEST_CASE("cli frames: a time limit is for all of them, and what is not begun is
   CHECK_FALSE(folder.has("a-0089.png"));
 }
 
-TEST_CASE("cli frames: parts of the samples are merged frame by frame") {
+TEST_CASE("cli frames: parts of the samples are merged frame by frame", "[cli]") {
   const Frames folder;
   REQUIRE(folder.run("render hop.fathom -s 8 --frames 1:3 -o whole.exr -q").code == 0);
   REQUIRE(folder.run("render hop.fathom -s 8 --frames 1:3 --sample-range 0:3 -o a.film -q").code == 0);
@@ -370,7 +372,7 @@ TEST_CASE("cli frames: parts of the samples are merged frame by frame") {
   CHECK(folder.run("merge a-0001.film b-0002.film -o sum.exr -q").code == 65);
 }
 
-TEST_CASE("cli frames: regions are built once while the programs stay the same") {
+TEST_CASE("cli frames: regions are built once while the programs stay the same", "[cli]") {
   const Frames folder;
   folder.write("many.fathom", R"(fathom 1
 param time = 0

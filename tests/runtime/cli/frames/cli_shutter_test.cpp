@@ -31,7 +31,7 @@ class Moving : public Folder {
   }
 };
 
-TEST_CASE("cli shutter: a still with a time blurs at its time, as the frame of that time does") {
+TEST_CASE("cli shutter: a still with a time blurs at its time, as the frame of that time does", "[cli]") {
   const Moving folder;
   REQUIRE(folder.run("render fast.json -D time=0.1 -o fast.exr -q").code == 0);
   REQUIRE(folder.run("render still.json -D time=0.1 -o still.exr -q").code == 0);
@@ -47,7 +47,7 @@ TEST_CASE("cli shutter: a still with a time blurs at its time, as the frame of t
   CHECK(folder.run("diff fast.exr still.exr --metric mse --tol 1e-3 -q").code == 1);
 }
 
-TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace") {
+TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace", "[cli]") {
   const Moving folder;
   REQUIRE(folder.run("render fast.json -o whole.exr -q --shutter-times 5").code == 0);
   REQUIRE(folder.run("render fast.json -o a.exr -q --shutter-times 5 --threads 3 -t 3").code == 0);
@@ -71,7 +71,7 @@ TEST_CASE("cli shutter: threads, tiles, parts and resumes leave no trace") {
   CHECK(folder.run("merge still.film 5.film -o sum.exr").code == 65);
 }
 
-TEST_CASE("cli shutter: kill -9 and resume give the bits of a render that was not disturbed") {
+TEST_CASE("cli shutter: kill -9 and resume give the bits of a render that was not disturbed", "[cli]") {
   const Moving folder;
   const std::string render =
       "fast.json --denoise --shutter-times 8 -q -s " + std::to_string(fathom::test::scaled_cases(1600));
@@ -85,7 +85,7 @@ TEST_CASE("cli shutter: kill -9 and resume give the bits of a render that was no
   CHECK((folder.read("a.exr") == folder.read("whole.exr")));
 }
 
-TEST_CASE("cli shutter: the camera may be what moves, and is one with the command line's") {
+TEST_CASE("cli shutter: the camera may be what moves, and is one with the command line's", "[cli]") {
   const Moving folder;
   folder.write("pan.fathom", R"(fathom 1
 param time = 0
@@ -110,7 +110,7 @@ object sphere(0.5)
   CHECK((folder.read("stands.pfm") == folder.read("held.pfm")));
 }
 
-TEST_CASE("cli shutter: moments of the same programs have their regions together") {
+TEST_CASE("cli shutter: moments of the same programs have their regions together", "[cli]") {
   const Moving folder;
   folder.write("many.fathom", R"(fathom 1
 param time = 0
@@ -126,7 +126,7 @@ object [for i in 0..729: sphere(0.3).translate([mod(i, 9), mod(floor(i/9), 9), f
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }
 
-TEST_CASE("cli shutter: far from zero all moments are about one origin") {
+TEST_CASE("cli shutter: far from zero all moments are about one origin", "[cli]") {
   const Moving folder;
   folder.write("far.fathom", R"(fathom 1
 param time = 0
@@ -138,7 +138,7 @@ object sphere(0.5).translate([100000 + 60*time, 0, 0])
   REQUIRE(folder.run("render far.fathom -o far.exr -q").code == 0);
 }
 
-TEST_CASE("cli shutter: what takes no part of the moments is refused") {
+TEST_CASE("cli shutter: what takes no part of the moments is refused", "[cli]") {
   const Moving folder;
   const Result result = folder.run("render fast.json -o a.png --noise-threshold 0.1");
   INFO(result.err);
@@ -153,7 +153,7 @@ TEST_CASE("cli shutter: what takes no part of the moments is refused") {
   CHECK((folder.read("a.exr") == folder.read("b.exr")));
 }
 
-TEST_CASE("cli shutter: without a time nothing blurs, and a warning says so") {
+TEST_CASE("cli shutter: without a time nothing blurs, and a warning says so", "[cli]") {
   const Moving folder;
   folder.write("frame.json", R"({"version": 1, "params": {"frame": 0}, "film": {"width": 8, "height": 8},
     "camera": {"position": [0, 0, 4], "shutter": 0.5}, "background": [1, 1, 1], "objects": [{"type": "sphere", "radius": "1 + frame"}]})");
@@ -163,7 +163,7 @@ TEST_CASE("cli shutter: without a time nothing blurs, and a warning says so") {
   CHECK(folder.run("render frame.json --frames 0:2 -o a.png -q").code == 0);
 }
 
-TEST_CASE("cli shutter: errors while it is open name the time, and check finds them") {
+TEST_CASE("cli shutter: errors while it is open name the time, and check finds them", "[cli]") {
   const Moving folder;
   folder.write("shrink.json", R"({"version": 1, "params": {"time": 0}, "film": {"width": 4, "height": 4, "fps": 1},
     "camera": {"position": [0, 0, 4], "shutter": 1}, "background": [1, 1, 1],

@@ -21,7 +21,7 @@ const char* const kDial = R"({
 
 }  // namespace
 
-TEST_CASE("cli: -D gives the scene's parameters values, for every verb") {
+TEST_CASE("cli: -D gives the scene's parameters values, for every verb", "[cli]") {
   const Folder folder;
   folder.write("dial.json", kDial);
   const auto first_line = [&](const std::string& arguments) {
@@ -44,7 +44,7 @@ TEST_CASE("cli: -D gives the scene's parameters values, for every verb") {
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }
 
-TEST_CASE("cli: a value that is good for the parameter and bad for the scene is the scene's error") {
+TEST_CASE("cli: a value that is good for the parameter and bad for the scene is the scene's error", "[cli]") {
   const Folder folder;
   folder.write("dial.json", kDial);
   CHECK(folder.run("check dial.json -D radius=0").code == 1);
@@ -52,7 +52,7 @@ TEST_CASE("cli: a value that is good for the parameter and bad for the scene is 
   CHECK_THAT(folder.run("check dial.json -D radius=0").err, Contains("`radius` must be positive; `twice/2` is 0"));
 }
 
-TEST_CASE("cli: values that the scene's parameters cannot have are exit code 2") {
+TEST_CASE("cli: values that the scene's parameters cannot have are exit code 2", "[cli]") {
   const Folder folder;
   folder.write("dial.json", kDial);
   const std::pair<const char*, const char*> cases[] = {

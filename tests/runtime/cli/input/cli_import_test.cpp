@@ -27,7 +27,7 @@ std::string data(const std::string& name) { return "'" FATHOM_SOURCE_DIR "/tests
 
 }  // namespace
 
-TEST_CASE("cli: every verb reads the other formats, from files of any name and from standard input") {
+TEST_CASE("cli: every verb reads the other formats, from files of any name and from standard input", "[cli]") {
   const Folder folder;
   folder.write("circle.vm", kCircle);
   folder.write("balls", kTwoBalls);
@@ -45,7 +45,7 @@ TEST_CASE("cli: every verb reads the other formats, from files of any name and f
   CHECK(folder.run("eval balls --at -2,0,0").out.starts_with("1.1 -1 0 0 "));
 }
 
-TEST_CASE("cli: import writes a scene that means the same") {
+TEST_CASE("cli: import writes a scene that means the same", "[cli]") {
   const Folder folder;
   folder.write("circle.vm", kCircle);
   folder.write("balls.json", kTwoBalls);
@@ -62,7 +62,7 @@ TEST_CASE("cli: import writes a scene that means the same") {
   }
 }
 
-TEST_CASE("cli: a model is drawn as the scene that import writes of it, on a ground and lit") {
+TEST_CASE("cli: a model is drawn as the scene that import writes of it, on a ground and lit", "[cli]") {
   const Folder folder;
   folder.write("balls", kTwoBalls);
   CHECK(folder.run("import balls -o scene.json").code == 0);
@@ -81,7 +81,7 @@ TEST_CASE("cli: a model is drawn as the scene that import writes of it, on a gro
   CHECK_THAT(stored.err, !Contains("other programs"));
 }
 
-TEST_CASE("cli: import refuses scenes, mistakes, and its own input as output") {
+TEST_CASE("cli: import refuses scenes, mistakes, and its own input as output", "[cli]") {
   const Folder folder;
   folder.write("circle.vm", kCircle);
   folder.write("bad.vm", "x var-x\ny add x z\n");
@@ -97,7 +97,7 @@ TEST_CASE("cli: import refuses scenes, mistakes, and its own input as output") {
   CHECK_THAT(folder.run("import circle.vm -o none/out.json").err, Contains("cannot write to the folder `none`"));
 }
 
-TEST_CASE("cli: prospero's pixels") {
+TEST_CASE("cli: prospero's pixels", "[cli]") {
   const Folder folder;
   const Result result =
       folder.run("slice " + data("prospero.vm") + " -o a.png --show sign --size 1024x1024 --box -1,-1,1,1");

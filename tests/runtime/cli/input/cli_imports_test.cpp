@@ -23,7 +23,7 @@ void write_scene(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("cli: imports are relative to the file that has them, wherever one is") {
+TEST_CASE("cli: imports are relative to the file that has them, wherever one is", "[cli]") {
   const Folder folder;
   write_scene(folder);
   CHECK(folder.run("eval s/a.fathom --at 2,0,0").out == "1 1 0 0 a\n");
@@ -36,7 +36,7 @@ TEST_CASE("cli: imports are relative to the file that has them, wherever one is"
   CHECK(folder.run("check -", "fathom 1\nimport \"s/lib/balls.fathom\" as b\nobject b.scene\n").code == 0);
 }
 
-TEST_CASE("cli: imports out of the folder are refused, by links too, and --root allows a larger one") {
+TEST_CASE("cli: imports out of the folder are refused, by links too, and --root allows a larger one", "[cli]") {
   const Folder folder;
   write_scene(folder);
   std::filesystem::create_directories(folder.path() / "s/deep");
@@ -57,7 +57,7 @@ TEST_CASE("cli: imports out of the folder are refused, by links too, and --root 
   CHECK_THAT(folder.run("check s/d.fathom").err, Contains("it is no file"));
 }
 
-TEST_CASE("cli: compiled scenes carry what they import") {
+TEST_CASE("cli: compiled scenes carry what they import", "[cli]") {
   const Folder folder;
   write_scene(folder);
   REQUIRE(folder.run("compile s/a.fathom -o a.fbc").code == 0);
@@ -70,7 +70,7 @@ TEST_CASE("cli: compiled scenes carry what they import") {
   REQUIRE(folder.run("dump a.fbc --listing -o a.txt").code != 70);
 }
 
-TEST_CASE("cli: messages name the file, and the calls that led there") {
+TEST_CASE("cli: messages name the file, and the calls that led there", "[cli]") {
   const Folder folder;
   write_scene(folder);
   folder.write("s/e.fathom", "fathom 1\nimport \"lib/balls.fathom\" as balls\nobject balls.ball(-1)\n");

@@ -15,7 +15,7 @@ using namespace fathom::test;
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-TEST_CASE("cli: --limit sets a limit, by name") {
+TEST_CASE("cli: --limit sets a limit, by name", "[cli]") {
   const Folder folder;
   CHECK(folder.run("check two.json --limit nodes=9").code == 0);
   const Result refused = folder.run("render -q two.json -o out.png --limit nodes=3");
@@ -32,7 +32,7 @@ TEST_CASE("cli: --limit sets a limit, by name") {
   }
 }
 
-TEST_CASE("cli: what --limit cannot be is explained") {
+TEST_CASE("cli: what --limit cannot be is explained", "[cli]") {
   const Folder folder;
   const auto check = [&](const std::string& given, const std::string& message, const std::string& help) {
     const Result result = folder.run("check ball.json --limit " + given);
@@ -53,7 +53,7 @@ TEST_CASE("cli: what --limit cannot be is explained") {
   }
 }
 
-TEST_CASE("cli: a file is read to the limit of its size, whatever it is") {
+TEST_CASE("cli: a file is read to the limit of its size, whatever it is", "[cli]") {
   const Folder folder;
   const std::string ball = kBall;
   const std::string size = std::to_string(ball.size()), less = std::to_string(ball.size() - 1);
@@ -69,7 +69,7 @@ TEST_CASE("cli: a file is read to the limit of its size, whatever it is") {
 }
 
 // Regions get whole MiB, half of the memory that the film leaves. The nodes of 400 balls take 2.6 MB.
-TEST_CASE("cli: regions get no more memory than the limit leaves") {
+TEST_CASE("cli: regions get no more memory than the limit leaves", "[cli]") {
   const Folder folder;
   std::string balls;
   for (int i = 0; i < 400; ++i) {
@@ -86,7 +86,7 @@ TEST_CASE("cli: regions get no more memory than the limit leaves") {
   CHECK_FALSE(contains(little.err, "memory of regions"));
 }
 
-TEST_CASE("cli: memory is counted before it is taken") {
+TEST_CASE("cli: memory is counted before it is taken", "[cli]") {
   const Folder folder;
   // 112 bytes per pixel: 32 of radiance, 56 of the first hit and 24 of the image.
   CHECK(folder.run("render -q ball.json -s 1 -o out.png -a --size 100x10 --limit memory=112000").code == 0);
@@ -118,7 +118,7 @@ TEST_CASE("cli: memory is counted before it is taken") {
   CHECK(folder.run("diff out.png out.png --limit memory=18000").code == 65);
 }
 
-TEST_CASE("cli: a picture's size is limited on the command line, too") {
+TEST_CASE("cli: a picture's size is limited on the command line, too", "[cli]") {
   const Folder folder;
   // The scene's image has 512.
   CHECK(folder.run("render -q ball.json -s 1 -o out.png --limit pixels=511").code == 65);

@@ -58,7 +58,8 @@ Darkness darkness_of(const Folder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("cli: a scene without a camera is in the picture as a whole, whatever its size, place and the picture's") {
+TEST_CASE("cli: a scene without a camera is in the picture as a whole, whatever its size, place and the picture's",
+          "[cli]") {
   const Folder folder;
   for (const std::string& objects :
        {ball("1", "0, 0, 0"), ball("1e-3", "0.5, 0, 0"), ball("0.5", "1e6, -2e5, 3"), ball("300", "0, 500, 0")}) {
@@ -74,14 +75,14 @@ TEST_CASE("cli: a scene without a camera is in the picture as a whole, whatever 
   }
 }
 
-TEST_CASE("cli: a ground beside things does not keep them from being framed") {
+TEST_CASE("cli: a ground beside things does not keep them from being framed", "[cli]") {
   const Folder folder;
   folder.write("a.json", scene_of(ball("0.01", "3, 0.01, 0") + R"(, {"type": "plane", "normal": [0, 1, 0]})"));
   REQUIRE(folder.run("render a.json -q -o a.pfm").code == 0);
   CHECK(darkness_of(folder, "a.pfm").middle == 0);
 }
 
-TEST_CASE("cli: -v prints the camera as a scene file has it, and that renders to the same picture") {
+TEST_CASE("cli: -v prints the camera as a scene file has it, and that renders to the same picture", "[cli]") {
   const Folder folder;
   const std::string objects = ball("1", "0.3, 0.2, -7");
   folder.write("a.json", scene_of(objects));
@@ -96,14 +97,14 @@ TEST_CASE("cli: -v prints the camera as a scene file has it, and that renders to
   CHECK(camera_of(folder.run("render b.json -v -o b.pfm --size 9x40")) == camera);
 }
 
-TEST_CASE("cli: a camera that says nothing is not the lack of one") {
+TEST_CASE("cli: a camera that says nothing is not the lack of one", "[cli]") {
   const Folder folder;
   folder.write("a.json", scene_of(ball("1", "0, 0, 0"), "\"camera\": {}, "));
   CHECK(camera_of(folder.run("render a.json -v -o a.png")) ==
         R"("camera": {"position": [0, 0, 5], "target": [0, 0, 0], "fov": 45})");
 }
 
-TEST_CASE("cli: --position, --look-at and --frame place the camera of any scene") {
+TEST_CASE("cli: --position, --look-at and --frame place the camera of any scene", "[cli]") {
   const Folder folder;
   const auto camera = [&](const std::string& arguments) {
     const Result result = folder.run("render ball.json -v -o a.pfm " + arguments);
@@ -121,7 +122,7 @@ TEST_CASE("cli: --position, --look-at and --frame place the camera of any scene"
   CHECK_THAT(camera("--frame --position 9,0,0"), Contains(", 0, 0], \"target\": [0, 0, 0]"));
 }
 
-TEST_CASE("cli: options that make no camera are exit code 2, with a remedy") {
+TEST_CASE("cli: options that make no camera are exit code 2, with a remedy", "[cli]") {
   const Folder folder;
   folder.write("ground.json", scene_of(R"({"type": "plane", "normal": [0, 1, 0]})"));
   const auto says = [&](const std::string& arguments, const std::string& text) {
@@ -140,7 +141,7 @@ TEST_CASE("cli: options that make no camera are exit code 2, with a remedy") {
 }
 
 // The default `up` is then parallel to the viewing direction and cannot orient the camera.
-TEST_CASE("cli: a view from straight above has -z up, one from straight below too") {
+TEST_CASE("cli: a view from straight above has -z up, one from straight below too", "[cli]") {
   const Folder folder;
   for (const std::string from : {"0,9,0", "0,-9,0"}) {
     const Result result =
@@ -150,7 +151,7 @@ TEST_CASE("cli: a view from straight above has -z up, one from straight below to
   }
 }
 
-TEST_CASE("cli: a checkpoint of another place of the camera is another render's") {
+TEST_CASE("cli: a checkpoint of another place of the camera is another render's", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -q -o a.film").code == 0);
   REQUIRE(folder.run("render ball.json -q -o b.film --position 0,1,4").code == 0);

@@ -17,7 +17,7 @@ bool has_program(const Folder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("cli: bash completes verbs, options and their values") {
+TEST_CASE("cli: bash completes verbs, options and their values", "[cli]") {
   const Folder folder;
   if (!has_program(folder, "bash")) return;
   const Result result = folder.run_script(R"(
@@ -71,7 +71,7 @@ END
   next();
 }
 
-TEST_CASE("cli: the scripts for zsh and fish are ones, and name every option of render") {
+TEST_CASE("cli: the scripts for zsh and fish are ones, and name every option of render", "[cli]") {
   const Folder folder;
   const std::string zsh = folder.run("completion zsh").out, fish = folder.run("completion fish").out;
   CHECK(zsh.starts_with("#compdef fathom\n"));
@@ -95,13 +95,13 @@ TEST_CASE("cli: the scripts for zsh and fish are ones, and name every option of 
   if (has_program(folder, "fish")) CHECK(folder.run_script("fish --no-execute fathom.fish").code == 0);
 }
 
-TEST_CASE("cli: a shell that is not known is exit code 2") {
+TEST_CASE("cli: a shell that is not known is exit code 2", "[cli]") {
   const Result result = Folder().run("completion basch");
   CHECK(result.code == 2);
   CHECK_THAT(result.err, Contains("did you mean `bash`?"));
 }
 
-TEST_CASE("cli: the manual page has every verb, option and exit status, and groff has nothing against it") {
+TEST_CASE("cli: the manual page has every verb, option and exit status, and groff has nothing against it", "[cli]") {
   const Folder folder;
   const std::string page = folder.run("man").out;
   CHECK_THAT(page, Contains(".TH FATHOM 1") && Contains(".SH NAME\nfathom \\- ") && Contains(".SH EXIT STATUS"));

@@ -78,15 +78,15 @@ int check_page(const Folder& folder, const std::string& page) {
 
 }  // namespace
 
-TEST_CASE("docs: the tutorial's commands print what it shows", "[docs]") {
+TEST_CASE("docs: the tutorial's commands print what it shows", "[cli][docs]") {
   CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/tutorial/first-scene.md")) >= 5);
 }
 
-TEST_CASE("docs: each pass prints the graphs before and after it as its section shows them", "[docs]") {
+TEST_CASE("docs: each pass prints the graphs before and after it as its section shows them", "[cli][docs]") {
   CHECK(check_page(Folder(), read_file(FATHOM_SOURCE_DIR "/docs/explanation/passes.md")) >= 20);
 }
 
-TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[docs]") {
+TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[cli][docs]") {
   const Folder folder;
   folder.write("small.fathom",
                "fathom 1\ndef gear(teeth) =\n  let radius = require(teeth >= 6, \"a gear needs 6 teeth or more\", "
@@ -106,7 +106,7 @@ TEST_CASE("docs: the scenes of the language's page are sound and laid out", "[do
   CHECK(scenes >= 5);
 }
 
-TEST_CASE("docs: README shows scenes/melt.fathom and its listing", "[docs]") {
+TEST_CASE("docs: README shows scenes/melt.fathom and its listing", "[cli][docs]") {
   const std::string melt = read_file(FATHOM_SOURCE_DIR "/scenes/melt.fathom");
   CHECK(melt.starts_with("// melt.fathom"));
   const std::string page = read_file(FATHOM_SOURCE_DIR "/README.md");

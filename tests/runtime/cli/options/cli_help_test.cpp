@@ -38,7 +38,7 @@ std::string longest_line(const std::string& text) {
 }  // namespace
 
 // Regression: help printed lines of 200 characters and more on any terminal.
-TEST_CASE("cli: help has no line wider than the terminal") {
+TEST_CASE("cli: help has no line wider than the terminal", "[cli]") {
   const Folder folder;
   std::string script;
   const std::set<std::string> names = verbs();
@@ -56,7 +56,7 @@ TEST_CASE("cli: help has no line wider than the terminal") {
   }
 }
 
-TEST_CASE("cli: help is 80 columns wide without a terminal, and COLUMNS that is no number says nothing") {
+TEST_CASE("cli: help is 80 columns wide without a terminal, and COLUMNS that is no number says nothing", "[cli]") {
   const Folder folder;
   for (const char* variable : {"unset COLUMNS", "COLUMNS=wide; export COLUMNS", "COLUMNS=0; export COLUMNS"}) {
     INFO(variable);
@@ -66,14 +66,14 @@ TEST_CASE("cli: help is 80 columns wide without a terminal, and COLUMNS that is 
   }
 }
 
-TEST_CASE("cli: an example that is too wide becomes lines that a shell joins") {
+TEST_CASE("cli: an example that is too wide becomes lines that a shell joins", "[cli]") {
   const Folder folder;
   const std::string help = folder.run_script("COLUMNS=40; export COLUMNS; $fathom help render").out;
   CHECK_THAT(help,
              Contains("  # and out-albedo.png, ...\n  fathom render scene.json -o \\\n      out.png -a -d -n\n"));
 }
 
-TEST_CASE("cli: -V and --version print version, commit and instruction set") {
+TEST_CASE("cli: -V and --version print version, commit and instruction set", "[cli]") {
   const Folder folder;
   const Result result = folder.run("-V");
   CHECK(result.code == 0);

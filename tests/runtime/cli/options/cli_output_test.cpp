@@ -15,7 +15,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: -o - writes the bytes of the file to standard output") {
+TEST_CASE("cli: -o - writes the bytes of the file to standard output", "[cli]") {
   const Folder folder;
   const Result both = folder.run("render ball.json -o a.png -o -");
   CHECK(both.code == 0);
@@ -37,7 +37,7 @@ TEST_CASE("cli: -o - writes the bytes of the file to standard output") {
 }
 
 // Text that normally goes to standard output goes to standard error instead.
-TEST_CASE("cli: slice and diff write their pictures to standard output, and their numbers elsewhere") {
+TEST_CASE("cli: slice and diff write their pictures to standard output, and their numbers elsewhere", "[cli]") {
   const Folder folder;
   const Result slice = folder.run("slice ball.json --show sign --size 8x8 -o -");
   CHECK(slice.code == 0);
@@ -50,7 +50,7 @@ TEST_CASE("cli: slice and diff write their pictures to standard output, and thei
   CHECK_THAT(diff.err, Contains("mse     0\n"));
 }
 
-TEST_CASE("cli: what does not go with -o - is exit code 2") {
+TEST_CASE("cli: what does not go with -o - is exit code 2", "[cli]") {
   const Folder folder;
   struct Case {
     const char* arguments;
@@ -78,7 +78,7 @@ TEST_CASE("cli: what does not go with -o - is exit code 2") {
   CHECK(folder.files() == 2);
 }
 
-TEST_CASE("cli: standard output that takes no more is exit code 74, and a render is kept") {
+TEST_CASE("cli: standard output that takes no more is exit code 74, and a render is kept", "[cli]") {
   const Folder folder;
   const Result result = folder.run_script("$fathom render ball.json -o - --checkpoint kept.film >/dev/full");
   CHECK(result.code == 74);

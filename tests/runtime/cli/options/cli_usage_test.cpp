@@ -13,7 +13,7 @@ using fathom::test::Result;
 
 }  // namespace
 
-TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong") {
+TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong", "[cli]") {
   struct Case {
     const char* arguments;
     const char* message;
@@ -117,7 +117,7 @@ TEST_CASE("cli: every wrong command line is exit code 2 and says what is wrong")
   CHECK(folder.files() == 2);  // the scenes, and no images
 }
 
-TEST_CASE("cli: help and version go to stdout and succeed") {
+TEST_CASE("cli: help and version go to stdout and succeed", "[cli]") {
   const Folder folder;
   for (const char* arguments : {"--help", "-h", "help"}) {
     const Result result = folder.run(arguments);
@@ -137,7 +137,7 @@ TEST_CASE("cli: help and version go to stdout and succeed") {
   CHECK(nothing.out == "");
 }
 
-TEST_CASE("cli: render --help names every flag of the paper") {
+TEST_CASE("cli: render --help names every flag of the paper", "[cli]") {
   const std::string help = Folder().run("render -h").out;
   for (const char* names :
        {"-h,--help", "-v,", "--aspect", "-a,--albedo", "-d,--depth", "-n,--normal", "-o,--output",
@@ -146,7 +146,7 @@ TEST_CASE("cli: render --help names every flag of the paper") {
   }
 }
 
-TEST_CASE("cli: the version is the project's") {
+TEST_CASE("cli: the version is the project's", "[cli]") {
   std::stringstream lists;
   lists << std::ifstream(FATHOM_SOURCE_DIR "/CMakeLists.txt").rdbuf();
   const Result result = Folder().run("--version");

@@ -48,7 +48,7 @@ class SlowFolder : public Folder {
   SlowFolder() { write("slow.json", kSlow); }
 };
 
-TEST_CASE("cli checkpoint: signals end it with 75, the picture so far and a checkpoint to go on from") {
+TEST_CASE("cli checkpoint: signals end it with 75, the picture so far and a checkpoint to go on from", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
   for (const char* signal : {"INT", "TERM", "HUP"}) {
@@ -65,7 +65,7 @@ TEST_CASE("cli checkpoint: signals end it with 75, the picture so far and a chec
   }
 }
 
-TEST_CASE("cli checkpoint: SIGUSR1 writes the picture so far, and the render goes on") {
+TEST_CASE("cli checkpoint: SIGUSR1 writes the picture so far, and the render goes on", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.png -q").code == 0);
   const Result result = folder.run_script(
@@ -77,7 +77,7 @@ TEST_CASE("cli checkpoint: SIGUSR1 writes the picture so far, and the render goe
   CHECK(folder.read("a.png") == folder.read("whole.png"));
 }
 
-TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was not disturbed") {
+TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was not disturbed", "[cli]") {
   const SlowFolder folder;
   for (const std::string way : {"", " --noise-threshold 0 --denoise"}) {
     const std::string render = "slow.json --checkpoint now.film -o a.exr" + way;
@@ -95,7 +95,7 @@ TEST_CASE("cli checkpoint: kill -9 and resume give the bits of a render that was
   }
 }
 
-TEST_CASE("cli checkpoint: a finished one is kept where it was asked for, and resumed is success") {
+TEST_CASE("cli checkpoint: a finished one is kept where it was asked for, and resumed is success", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   REQUIRE(folder.has("done.film"));
@@ -110,7 +110,7 @@ TEST_CASE("cli checkpoint: a finished one is kept where it was asked for, and re
   CHECK_THAT(folder.read("stats.json"), Contains("\"resumed_samples\": 6144,"));
 }
 
-TEST_CASE("cli checkpoint: that of another render is refused, and what differs is named") {
+TEST_CASE("cli checkpoint: that of another render is refused, and what differs is named", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   std::string brighter = kSlow;
@@ -143,7 +143,7 @@ TEST_CASE("cli checkpoint: that of another render is refused, and what differs i
   CHECK(folder.run("render spaced.json -s 4 -o a.exr --checkpoint done.film --resume").code == 0);
 }
 
-TEST_CASE("cli checkpoint: without --resume a state of this very render is not overwritten") {
+TEST_CASE("cli checkpoint: without --resume a state of this very render is not overwritten", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   REQUIRE(folder.run_script(interrupted("slow.json -o b.exr", "INT", "b.exr.checkpoint")).out == "75\n");
@@ -160,7 +160,7 @@ TEST_CASE("cli checkpoint: without --resume a state of this very render is not o
   }
 }
 
-TEST_CASE("cli checkpoint: of another render it gives way under the name that nobody chose") {
+TEST_CASE("cli checkpoint: of another render it gives way under the name that nobody chose", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   const std::string film = folder.read("done.film");
@@ -180,7 +180,7 @@ TEST_CASE("cli checkpoint: of another render it gives way under the name that no
   CHECK_THAT(none.err, Contains("there is no checkpoint"));
 }
 
-TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is no film stays") {
+TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is no film stays", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o a.exr --checkpoint done.film -q").code == 0);
   std::string damaged = folder.read("done.film"), newer = damaged;
@@ -215,7 +215,7 @@ TEST_CASE("cli checkpoint: a broken one is no reason not to render, and what is 
   CHECK(folder.run("render slow.json -s 4 -o a.exr --checkpoint slow.json").code == 2);
 }
 
-TEST_CASE("cli checkpoint: what another run has written meanwhile is its own") {
+TEST_CASE("cli checkpoint: what another run has written meanwhile is its own", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -s 4 -o b.exr --checkpoint other.film -q").code == 0);
   const std::string other = folder.read("other.film");
@@ -231,7 +231,7 @@ TEST_CASE("cli checkpoint: what another run has written meanwhile is its own") {
   }
 }
 
-TEST_CASE("cli checkpoint: the picture so far is written before every pixel has a sample") {
+TEST_CASE("cli checkpoint: the picture so far is written before every pixel has a sample", "[cli]") {
   const SlowFolder folder;
   const Result stopped =
       folder.run_script(interrupted("slow.json -o a.png --size 900x900 --threads 1", "INT", "a.png.checkpoint"));
@@ -247,7 +247,7 @@ TEST_CASE("cli checkpoint: the picture so far is written before every pixel has 
   CHECK_THAT(part.err, Contains("a pixel has 1 sample at least, 1.00 on average"));
 }
 
-TEST_CASE("cli checkpoint: no help names one in a folder that is gone") {
+TEST_CASE("cli checkpoint: no help names one in a folder that is gone", "[cli]") {
   const SlowFolder folder;
   const std::string options = "slow.json -o a.exr -s 65536 --checkpoint kept/now.film";  // too many samples to finish
   REQUIRE(folder.run_script("mkdir kept\n" + interrupted(options, "INT", "kept/now.film")).out == "75\n");
@@ -260,7 +260,7 @@ TEST_CASE("cli checkpoint: no help names one in a folder that is gone") {
   CHECK_THAT(gone.err, Contains("is not kept") && !Contains("an earlier state of it is in"));
 }
 
-TEST_CASE("cli checkpoint: nobody who listens need stay") {
+TEST_CASE("cli checkpoint: nobody who listens need stay", "[cli]") {
   const SlowFolder folder;
   // Messages go to a pipe whose reader has gone.
   const std::string render = "\"$fathom\" render slow.json -o a.exr --checkpoint-interval 0.01s -v &\npid=$!\n";
@@ -276,7 +276,7 @@ TEST_CASE("cli checkpoint: nobody who listens need stay") {
   CHECK(nohup.out == "0\n");
 }
 
-TEST_CASE("cli checkpoint: SIGUSR1 is no end before the first ray either") {
+TEST_CASE("cli checkpoint: SIGUSR1 is no end before the first ray either", "[cli]") {
   const SlowFolder folder;
   const Result result = folder.run_script(
       "( sleep 1.5; cat slow.json ) | \"$fathom\" render - -q -s 1 -o a.png &\n"
@@ -288,7 +288,7 @@ TEST_CASE("cli checkpoint: SIGUSR1 is no end before the first ray either") {
   CHECK(watching.out == "143\n");
 }
 
-TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stays") {
+TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stays", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
   REQUIRE(folder.run_script(interrupted("slow.json -o a.exr", "INT", "a.exr.checkpoint")).out == "75\n");
@@ -311,7 +311,7 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
   CHECK_THAT(nowhere.err, Contains("missing"));
 }
 
-TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
+TEST_CASE("cli checkpoint: a time limit writes what there is and says so", "[cli]") {
   const SlowFolder folder;
   REQUIRE(folder.run("render slow.json -o whole.exr -q").code == 0);
   const Result stopped =
@@ -335,7 +335,7 @@ TEST_CASE("cli checkpoint: a time limit writes what there is and says so") {
   }
 }
 
-TEST_CASE("cli checkpoint: a name that cannot be is refused before the first sample") {
+TEST_CASE("cli checkpoint: a name that cannot be is refused before the first sample", "[cli]") {
   const SlowFolder folder;
   CHECK(folder.run("render slow.json -o a.exr --checkpoint ''").code == 2);
   const std::string longest(255 - 4, 'n');
@@ -346,13 +346,13 @@ TEST_CASE("cli checkpoint: a name that cannot be is refused before the first sam
   CHECK_THAT(both.err, Contains("too long"));
 }
 
-TEST_CASE("cli checkpoint: --watch has none") {
+TEST_CASE("cli checkpoint: --watch has none", "[cli]") {
   for (const char* asked : {"--resume", "--checkpoint a.film", "--checkpoint-interval 5s"}) {
     CHECK(SlowFolder().run("render slow.json -o a.exr --watch " + std::string(asked)).code == 2);
   }
 }
 
-TEST_CASE("cli checkpoint: scripts/kill-test in short", "[heavy]") {
+TEST_CASE("cli checkpoint: scripts/kill-test in short", "[cli][heavy]") {
   const Folder folder;
   const Result result = folder.run_script("'" FATHOM_SOURCE_DIR "/scripts/kill-test' 8 \"$fathom\"");
   INFO(result.err);

@@ -18,7 +18,7 @@ std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), 
 }  // namespace
 
 // Regression: a render printed 25 lines, most of them zeros, before the name of the file.
-TEST_CASE("cli: a render closes with four lines, and -v with all counts before them") {
+TEST_CASE("cli: a render closes with four lines, and -v with all counts before them", "[cli]") {
   const Folder folder;
   const Result plain = folder.run("render ball.json -o a.png");
   CHECK(lines(plain.err) == 4);
@@ -33,7 +33,7 @@ TEST_CASE("cli: a render closes with four lines, and -v with all counts before t
              Contains("seconds of march") && Contains("evaluations per ray"));
 }
 
-TEST_CASE("cli: the closing lines say what part was drawn, and by how many samples") {
+TEST_CASE("cli: the closing lines say what part was drawn, and by how many samples", "[cli]") {
   const Folder folder;
   CHECK_THAT(folder.run("render ball.json -o a.png --crop 0,0,8,4 -s 1").err,
              Contains("drew ball.json: 8x4 pixels of 32x16, 1 sample per pixel\n"));
@@ -41,7 +41,7 @@ TEST_CASE("cli: the closing lines say what part was drawn, and by how many sampl
              Contains(", ended by noise below limit\n"));
 }
 
-TEST_CASE("cli: --watch prints one line per picture") {
+TEST_CASE("cli: --watch prints one line per picture", "[cli]") {
   const Folder folder;
   const Result result = folder.run_script(R"(
     wait_for() { for i in $(seq 2400); do if eval "$1"; then return 0; fi; sleep 0.05; done; exit 9; }

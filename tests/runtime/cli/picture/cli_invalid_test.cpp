@@ -19,7 +19,7 @@ constexpr const char* kGuarded = R"J({"version": 1, "background": [1, 1, 1], "ob
 
 }  // namespace
 
-TEST_CASE("cli: a render counts the rays that met no number, and names what and where") {
+TEST_CASE("cli: a render counts the rays that met no number, and names what and where", "[cli]") {
   const Folder folder;
   folder.write("root.json", kRoot);
   const std::string render = "render root.json -o root.png -r 16 -s 1 -q --threads ";
@@ -32,7 +32,7 @@ TEST_CASE("cli: a render counts the rays that met no number, and names what and 
   CHECK_THAT(folder.run(render + "1").err, !Contains("black"));
 }
 
-TEST_CASE("cli: check finds a point where the field is no number") {
+TEST_CASE("cli: check finds a point where the field is no number", "[cli]") {
   const Folder folder;
   folder.write("root.json", kRoot);
   CHECK_THAT(folder.run("check root.json").err, Contains("W0514"));

@@ -39,7 +39,7 @@ bool equal_there(const FloatImage& part, const FloatImage& whole, int x0, int y0
 
 }  // namespace
 
-TEST_CASE("cli layers: wrong flags are exit code 2 and say what is wrong") {
+TEST_CASE("cli layers: wrong flags are exit code 2 and say what is wrong", "[cli]") {
   struct Case {
     const char* arguments;
     const char* message;
@@ -81,7 +81,7 @@ TEST_CASE("cli layers: wrong flags are exit code 2 and say what is wrong") {
   CHECK(folder.files() == 2);
 }
 
-TEST_CASE("cli layers: trouble with files is told from trouble with their content") {
+TEST_CASE("cli layers: trouble with files is told from trouble with their content", "[cli]") {
   const Folder folder;
   const Result missing = folder.run("tonemap none.exr -o a.png");
   CHECK(missing.code == 74);
@@ -103,7 +103,7 @@ TEST_CASE("cli layers: trouble with files is told from trouble with their conten
   CHECK_FALSE(folder.has("a.png"));
 }
 
-TEST_CASE("cli layers: tonemap makes of the exr the bits that render writes") {
+TEST_CASE("cli layers: tonemap makes of the exr the bits that render writes", "[cli]") {
   const Folder folder;
   folder.write("toned.json", R"({"version": 1, "camera": {"position": [0, 1, 4]}, "background": [1, 2, 4],
     "film": {"width": 40, "height": 24, "exposure": 0.7, "tone": "filmic"}, "render": {"spp": 3},
@@ -130,7 +130,7 @@ TEST_CASE("cli layers: tonemap makes of the exr the bits that render writes") {
   }
 }
 
-TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit") {
+TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -o w.exr -o w.png -o w.pfm -a -n").code == 0);
   const FloatImage whole = read(folder, "w.exr");
@@ -152,7 +152,7 @@ TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit") {
   }
 }
 
-TEST_CASE("cli layers: two runs write the same file, and --profile adds the time") {
+TEST_CASE("cli layers: two runs write the same file, and --profile adds the time", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json -o a.exr --threads 1 -t 5").code == 0);
   REQUIRE(folder.run("render ball.json -o b.exr --threads 2").code == 0);
@@ -162,7 +162,7 @@ TEST_CASE("cli layers: two runs write the same file, and --profile adds the time
   CHECK(std::get<float>(read(folder, "b.exr").attributes.at("renderTimeSeconds")) > 0);
 }
 
-TEST_CASE("cli layers: the attributes say what was rendered, and where the camera was") {
+TEST_CASE("cli layers: the attributes say what was rendered, and where the camera was", "[cli]") {
   const Folder folder;
   folder.write("far.json",
                R"({"version": 1, "camera": {"position": [100003, 1, 4], "target": [100000, 0, 0], "fov": 60},

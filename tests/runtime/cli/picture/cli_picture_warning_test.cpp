@@ -32,7 +32,7 @@ std::string said(const Folder& folder, const std::string& scene, const std::stri
 
 }  // namespace
 
-TEST_CASE("cli: check and render warn of a scene without light") {
+TEST_CASE("cli: check and render warn of a scene without light", "[cli]") {
   const Folder folder;
   CHECK_THAT(said(folder, ball(kInFront, "")), Contains("[W0515]: there is no light") && Contains("`background`"));
   CHECK_THAT(folder.run("check scene.json").err, Contains("[W0515]: there is no light"));
@@ -48,7 +48,7 @@ TEST_CASE("cli: check and render warn of a scene without light") {
              "-r 32 -s 1") == "");
 }
 
-TEST_CASE("cli: check and render say where a scene is that is out of view") {
+TEST_CASE("cli: check and render say where a scene is that is out of view", "[cli]") {
   const Folder folder;
   const auto expect = [&](const std::string& target, const std::string& place) {
     const std::string scene = ball(R"("position": [0, 0, 4], "target": )" + target, kWhite);
@@ -69,7 +69,7 @@ TEST_CASE("cli: check and render say where a scene is that is out of view") {
   CHECK_THAT(folder.run("check --error-format json scene.json").err, !Contains("W0516"));
 }
 
-TEST_CASE("cli: render says of a missed scene whose place no box tells that nothing is in view") {
+TEST_CASE("cli: render says of a missed scene whose place no box tells that nothing is in view", "[cli]") {
   const Folder folder;
   const std::string up = R"({"version": 1, "camera": {"position": [0, 1, 0], "target": [0, 9, 0.1]},
     "background": [1, 1, 1], "objects": [{"type": "plane", "normal": [0, 1, 0], "offset": 0}]})";
@@ -78,7 +78,7 @@ TEST_CASE("cli: render says of a missed scene whose place no box tells that noth
   CHECK_THAT(folder.run("check scene.json").err, !Contains("W0516"));
 }
 
-TEST_CASE("cli: render warns of a picture that is of one color throughout, and says why") {
+TEST_CASE("cli: render warns of a picture that is of one color throughout, and says why", "[cli]") {
   const Folder folder;
   const std::string close = R"("position": [0, 0, 1.01], "target": [0, 0, 0])";
   const auto sky = [](const std::string& color) { return R"("background": [)" + color + "], "; };

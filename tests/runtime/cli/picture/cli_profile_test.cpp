@@ -24,7 +24,7 @@ std::vector<float> values_of(const std::string& map, const std::string& header) 
 
 }  // namespace
 
-TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves the picture alone") {
+TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves the picture alone", "[cli]") {
   const Folder folder;
   const Result plain = folder.run("render ball.json -o a.png --stats-json a.json");
   const Result profiled = folder.run("render ball.json -o b.png --stats-json b.json --profile");
@@ -46,7 +46,7 @@ TEST_CASE("cli: --profile adds the stages to the table and the JSON, and leaves 
   CHECK(a["evaluations"] == b["evaluations"]);
 }
 
-TEST_CASE("cli: --cost-map writes what was counted, as numbers and as colours") {
+TEST_CASE("cli: --cost-map writes what was counted, as numbers and as colours", "[cli]") {
   const Folder folder;
   const Result result = folder.run("render ball.json -o a.png --cost-map cost.pfm --stats-json s.json");
   REQUIRE(result.code == 0);
@@ -68,7 +68,7 @@ TEST_CASE("cli: --cost-map writes what was counted, as numbers and as colours") 
   CHECK(folder.read("a.png") == folder.read("b.png"));
 }
 
-TEST_CASE("cli: a cost map is the same for any number of threads and tile size") {
+TEST_CASE("cli: a cost map is the same for any number of threads and tile size", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("render ball.json --cost-map a.pfm --threads 1").code == 0);
   REQUIRE(folder.run("render ball.json --cost-map b.pfm --threads 3 -t 5").code == 0);
@@ -76,7 +76,7 @@ TEST_CASE("cli: a cost map is the same for any number of threads and tile size")
   CHECK(folder.read("a-instructions.pfm") == folder.read("b-instructions.pfm"));
 }
 
-TEST_CASE("cli: a cost map that cannot be written is refused before the first ray") {
+TEST_CASE("cli: a cost map that cannot be written is refused before the first ray", "[cli]") {
   const Folder folder;
   const auto expect = [&](const std::string& arguments, int code, const std::string& message) {
     INFO(arguments);

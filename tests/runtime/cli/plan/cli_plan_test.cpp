@@ -43,7 +43,7 @@ void check_same(const Folder& folder, const std::string& a, const std::string& b
 
 }  // namespace
 
-TEST_CASE("cli plan: the units of frames, in any order, are the frames of one run") {
+TEST_CASE("cli plan: the units of frames, in any order, are the frames of one run", "[cli]") {
   const PlanFolder folder;
   const Result planned =
       folder.run("plan hop.fathom --frames all -D wide=1.5 --denoise --tiles 2x2 --sample-block 4 -o p.json");
@@ -89,7 +89,7 @@ TEST_CASE("cli plan: the units of frames, in any order, are the frames of one ru
   CHECK(!folder.has("again.00.png"));
 }
 
-TEST_CASE("cli plan: a still of a compiled file, with the background's picture in the plan") {
+TEST_CASE("cli plan: a still of a compiled file, with the background's picture in the plan", "[cli]") {
   const Folder folder;
   folder.write("sky.json",
                R"({"version": 1, "params": {"r": 0.5}, "film": {"width": 20, "height": 10}, "render": {"spp": 3},
@@ -108,7 +108,7 @@ TEST_CASE("cli plan: a still of a compiled file, with the background's picture i
   check_same(folder, "m.exr", "w.exr");
 }
 
-TEST_CASE("cli plan: without --tiles and --sample-block units are cut by the time that they take") {
+TEST_CASE("cli plan: without --tiles and --sample-block units are cut by the time that they take", "[cli]") {
   const Folder folder;
   const std::string plan = "plan ball.json --size 200x130 -s 8 -o p.json ";
   CHECK_THAT(folder.run(plan + "--unit-time 10h --workers 4").err,
@@ -118,7 +118,7 @@ TEST_CASE("cli plan: without --tiles and --sample-block units are cut by the tim
   CHECK_THAT(folder.run(plan + "--unit-time 1e-9 --tiles 1x2").err, Contains("in 1x2 tiles and 8 blocks of 1"));
 }
 
-TEST_CASE("cli plan: a worker needs memory for its unit, not for the frame") {
+TEST_CASE("cli plan: a worker needs memory for its unit, not for the frame", "[cli]") {
   const Folder folder;
   const std::string picture = " ball.json --size 640x640 -s 1 --region-memory 8";
   REQUIRE(folder.run("plan" + picture + " --tiles 16x16 --no-pilot -q -o p.json").code == 0);
@@ -126,7 +126,7 @@ TEST_CASE("cli plan: a worker needs memory for its unit, not for the frame") {
   CHECK(folder.run("render --plan p.json --unit 100 --limit memory=20000000 -q").code == 0);
 }
 
-TEST_CASE("cli plan: what was cut short or is of another unit is found and rendered again") {
+TEST_CASE("cli plan: what was cut short or is of another unit is found and rendered again", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("plan ball.json --tiles 2x1 --sample-block 1 --no-pilot -q -o p.json").code == 0);
   REQUIRE(folder.run("render --plan p.json --units 0:4 -q").code == 0);
@@ -156,7 +156,7 @@ TEST_CASE("cli plan: what was cut short or is of another unit is found and rende
   check_same(folder, "m.png", "w.png");
 }
 
-TEST_CASE("cli plan: a queue's variable says which unit, or which task of several") {
+TEST_CASE("cli plan: a queue's variable says which unit, or which task of several", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("plan ball.json --tiles 4x2 --sample-block 2 --no-pilot -q -o p.json").code == 0);
   const std::string none =
@@ -177,7 +177,7 @@ TEST_CASE("cli plan: a queue's variable says which unit, or which task of severa
   CHECK_THAT(beyond.err, Contains("the plan has no unit 8") && Contains("0 to 7"));
 }
 
-TEST_CASE("cli plan: what does not go together is refused by what differs") {
+TEST_CASE("cli plan: what does not go together is refused by what differs", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("plan ball.json --tiles 2x2 --no-pilot -q -o p.json").code == 0);
   REQUIRE(folder.run("render --plan p.json --unit 0 -q").code == 0);
@@ -222,7 +222,7 @@ TEST_CASE("cli plan: what does not go together is refused by what differs") {
   CHECK(folder.run("plan --status p.json").code == 65);
 }
 
-TEST_CASE("cli plan: a signal leaves a checkpoint of the unit, which goes on from there") {
+TEST_CASE("cli plan: a signal leaves a checkpoint of the unit, which goes on from there", "[cli]") {
   const Folder folder;
   const std::string spp = is_sanitized() ? "2000" : "20000";
   REQUIRE(folder.run("plan ball.json -s " + spp + " --tiles 1x1 --no-pilot -q -o p.json").code == 0);

@@ -40,7 +40,7 @@ T read_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
 
 }  // namespace
 
-TEST_CASE("mesh files: names say formats") {
+TEST_CASE("mesh files: names say formats", "[mesh]") {
   CHECK(mesh_format_of("a.stl")->format == MeshFormat::Stl);
   CHECK(mesh_format_of("b/c.3MF")->format == MeshFormat::ThreeMf);
   CHECK(mesh_format_of("a.png") == nullptr);
@@ -48,7 +48,7 @@ TEST_CASE("mesh files: names say formats") {
   CHECK(mesh_format_of("stl") == nullptr);
 }
 
-TEST_CASE("mesh files: STL holds normals and corners") {
+TEST_CASE("mesh files: STL holds normals and corners", "[mesh]") {
   const auto bytes = encode_stl(tetrahedron());
   REQUIRE(bytes.size() == 84 + 4 * 50);
   CHECK(std::memcmp(bytes.data(), "solid", 5) != 0);
@@ -57,7 +57,7 @@ TEST_CASE("mesh files: STL holds normals and corners") {
   CHECK(read_at<float>(bytes, 84 + 50 + 12 + 12) == 1);  // the second corner of the second triangle
 }
 
-TEST_CASE("mesh files: PLY holds colours at vertices and faces") {
+TEST_CASE("mesh files: PLY holds colours at vertices and faces", "[mesh]") {
   const auto bytes = encode_ply(tetrahedron());
   const std::string text(bytes.begin(), bytes.end());
   CHECK_THAT(text, Contains("element vertex 4\n") && Contains("element face 4\n"));
@@ -71,7 +71,7 @@ TEST_CASE("mesh files: PLY holds colours at vertices and faces") {
   CHECK(bytes[face + 13] == 231);  // 0.8 as an sRGB signal
 }
 
-TEST_CASE("mesh files: OBJ numbers from one and names its materials") {
+TEST_CASE("mesh files: OBJ numbers from one and names its materials", "[mesh]") {
   const auto bytes = encode_obj(tetrahedron(), "part.mtl");
   const std::string text(bytes.begin(), bytes.end());
   CHECK(text ==
@@ -81,7 +81,7 @@ TEST_CASE("mesh files: OBJ numbers from one and names its materials") {
   CHECK_THAT(std::string(mtl.begin(), mtl.end()), Contains("newmtl red_<1>\nKd 1 0 0\n") && Contains("Ke 4 2 0"));
 }
 
-TEST_CASE("mesh files: GLB is in metres, with a primitive per material") {
+TEST_CASE("mesh files: GLB is in metres, with a primitive per material", "[mesh]") {
   const auto bytes = encode_glb(tetrahedron());
   REQUIRE(read_at<std::uint32_t>(bytes, 0) == 0x46546c67);
   REQUIRE(read_at<std::uint32_t>(bytes, 8) == bytes.size());
@@ -98,7 +98,7 @@ TEST_CASE("mesh files: GLB is in metres, with a primitive per material") {
   CHECK(read_at<std::uint32_t>(bytes, binary + 48 + 4) == 2);
 }
 
-TEST_CASE("mesh files: 3MF is a zip with units and colours, the same at any time") {
+TEST_CASE("mesh files: 3MF is a zip with units and colours, the same at any time", "[mesh]") {
   const auto bytes = encode_3mf(tetrahedron());
   REQUIRE(bytes);
   CHECK(encode_3mf(tetrahedron()) == bytes);
