@@ -5,6 +5,7 @@
 #include "runtime/render.h"
 #include "tests/support/catch.h"
 #include "tests/support/compiled.h"
+#include "tests/support/not_run.h"
 #include "vm/native/native_program.h"
 
 namespace fathom::test::native_code_test {
@@ -22,6 +23,7 @@ const char* const kScenes[] = {
 }  // namespace
 
 TEST_CASE("native code leaves no trace in pictures", "[runtime][native][render]") {
+  if (vm::NativeProgram::available().empty()) return not_run("this processor has no native code");
   for (const char* text : kScenes) {
     CAPTURE(text);
     const compiler::CompiledScene scene = compiled(text);

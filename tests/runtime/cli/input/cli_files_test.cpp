@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/catch.h"
+#include "tests/support/not_run.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_files_test {
@@ -188,7 +189,7 @@ TEST_CASE("cli files: a signal while the scene is read leaves the checkpoint tha
 
 // Regression: "terminate called after throwing an instance of 'std::bad_alloc'", and a signal.
 TEST_CASE("cli files: memory that ends in a thread is an error with a message", "[cli]") {
-  if (is_sanitized()) return;  // AddressSanitizer reserves more address space than the limit below
+  if (is_sanitized()) return test::not_run("AddressSanitizer reserves more address space than the limit");
   const Folder folder;
   int ended = 0;
   for (int megabytes = 40; megabytes <= 240; megabytes += 50) {
