@@ -1,4 +1,4 @@
-// Benchmark scene D without its file: random spheres and boxes in the unit cube (scripts/make-scene-d has the rules).
+// Benchmark scene D without its file: random spheres and boxes in the unit cube (bench/make-scene-d has the rules).
 #pragma once
 
 #include <cmath>

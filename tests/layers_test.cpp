@@ -81,7 +81,6 @@ const std::vector<std::string> kFolders = {
     "bindings/cpp",
     "bindings/c",
     "bindings/python",
-    "bindings",
 };
 
 // Folders of runtime/ that are not the renderer's: they use any part of the compiler.
@@ -103,7 +102,7 @@ const std::map<std::string, std::set<std::string>>& all_includes() {
     std::map<std::string, std::set<std::string>> files;
     for (const char* top : {"vm", "compiler", "runtime", "bindings"}) {
       for (const auto& entry : fs::recursive_directory_iterator(fs::path(FATHOM_SOURCE_DIR) / top)) {
-        if (!entry.is_regular_file()) continue;
+        if (!entry.is_regular_file() || entry.path().filename() == "CMakeLists.txt") continue;
         std::set<std::string>& includes = files[fs::relative(entry.path(), FATHOM_SOURCE_DIR).string()];
         std::ifstream in(entry.path());
         for (std::string line; std::getline(in, line);) {

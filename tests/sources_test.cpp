@@ -1,6 +1,5 @@
-// Rules that the text of every source file keeps. Includes: tests/layers_test.cpp. Comments: scripts/house.
+// Rules that the text of every source file keeps. Includes: tests/layers_test.cpp. Comments: tests/house.
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "tests/support/catch.h"
 
 namespace fathom::sources_test {
 

@@ -22,7 +22,7 @@ struct RegionForecast {
 };
 
 // Costs in evaluations of one instruction of the whole program at one point, all lanes full. Measured on scenes of
-// scripts/region-costs and bench/culling.cpp, between which they vary by a factor of 2 to 4.
+// bench/region-costs and bench/culling.cpp, between which they vary by a factor of 2 to 4.
 // kCutCost: of an instruction that is evaluated by intervals, in the cells of a register, and cut.
 // kLookupCost, kLeafCost: of an evaluation in a leaf, and of an instruction there, with few points per program.
 inline constexpr double kCutCost = 2000, kLookupCost = 50, kLeafCost = 40;

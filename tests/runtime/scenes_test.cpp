@@ -1,7 +1,6 @@
 // Every shipped scene: it compiles without a warning, and its image agrees with stored means
 // (tests/images/README.md).
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +9,7 @@
 
 #include "compiler/compile.h"
 #include "runtime/render.h"
+#include "tests/support/catch.h"
 #include "tests/support/golden.h"
 #include "tests/support/import_folder.h"
 
@@ -130,7 +130,7 @@ TEST_CASE("pictures of the scenes agree with their stored means", "[runtime][sce
   const char* updated = std::getenv("FATHOM_UPDATE_IMAGES");
   for (const fs::path& file : scene_files()) {
     CAPTURE(file.filename().string());
-    // These scenes are for show: they run the same code as the others, but take longer. scripts/pictures renders
+    // These scenes are for show: they run the same code as the others, but take longer. docs/make/pictures renders
     // them.
     const fs::path folder = file.parent_path().filename();
     if (folder == "gallery" || folder == "lib" || test::read_file(file).find("\nimport ") != std::string::npos)

@@ -1,12 +1,9 @@
 // A test case that cannot run on a machine says so, instead of passing in silence.
 #pragma once
 
-#if __has_include(<catch2/catch_all.hpp>)
-#include <catch2/catch_all.hpp>
-#else
-#include <catch2/catch.hpp>
-#endif
 #include <string>
+
+#include "tests/support/catch.h"
 
 namespace fathom::test {
 

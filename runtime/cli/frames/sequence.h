@@ -1,6 +1,6 @@
 // `fathom render --frames`: renders one image per frame in sequence, with the frame's number in the file names, and
 // keeps a journal from which an interrupted run resumes.
-// Tested by: tests/runtime/cli/frames/cli_frames_test.cpp, scripts/frames-test
+// Tested by: tests/runtime/cli/frames/cli_frames_test.cpp, tests/suites/frames
 #pragma once
 
 #include <optional>

@@ -1,11 +1,12 @@
 // Decimal exponents and powers of ten are exact: a number that people read is rounded by them.
 #include "vm/number/decimal.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <string>
+
+#include "tests/support/catch.h"
 
 namespace fathom::test::decimal_test {
 

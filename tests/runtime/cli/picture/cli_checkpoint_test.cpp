@@ -1,7 +1,7 @@
 // End-to-end tests of interrupted renders: signals, kill -9, full disks, checkpoints of other renders.
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/scaled_cases.h"
 
@@ -352,9 +352,9 @@ TEST_CASE("cli checkpoint: --watch has none", "[cli]") {
   }
 }
 
-TEST_CASE("cli checkpoint: scripts/kill-test in short", "[cli][heavy]") {
+TEST_CASE("cli checkpoint: tests/suites/kills in short", "[cli][heavy]") {
   const Folder folder;
-  const Result result = folder.run_script("'" FATHOM_SOURCE_DIR "/scripts/kill-test' 8 \"$fathom\"");
+  const Result result = folder.run_script("'" FATHOM_SOURCE_DIR "/tests/suites/kills' 8 \"$fathom\"");
   INFO(result.err);
   CHECK(result.code == 0);
   CHECK_THAT(result.out, Contains("8 kills: 8 equal hashes"));

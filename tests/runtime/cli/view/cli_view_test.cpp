@@ -1,11 +1,11 @@
-// End-to-end tests of `fathom view`, without a browser: scripts/test-browser has the page's.
-#include <catch2/catch.hpp>
+// End-to-end tests of `fathom view`, without a browser: tests/suites/browser has the page's.
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "runtime/image/image_png.h"
 #include "tests/runtime/cli/view/view_client.h"
+#include "tests/support/catch.h"
 
 namespace fathom::test::cli_view_test {
 namespace {
