@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <ostream>
 #include <thread>
 
@@ -59,12 +58,10 @@ ExitCode render_once(const RenderRequest& request, RenderCache& cache, const Str
 }  // namespace
 
 int run_render(std::span<const std::string> args, const Streams& streams) {
-  std::signal(SIGUSR1, SIG_IGN);  // ignore requests for an image while there is none
   // The Interruption exists from the start, so that a signal yields a checkpoint even while the scene is read and
   // compiled.
   std::optional<Interruption> interruption;
   if (asks_for_checkpoint(args)) interruption.emplace();
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of the messages may close its pipe before the render is done
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
