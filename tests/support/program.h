@@ -1,4 +1,4 @@
-// Runs the program under test in a temporary folder that contains two small scenes.
+// Runs command lines of the program in a temporary folder that contains two small scenes.
 #pragma once
 
 #include <filesystem>
@@ -38,7 +38,8 @@ inline const char* const kTwo = R"({
 std::string program_path();
 bool is_sanitized();  // true if the program was built with the sanitizers
 
-// Temporary folder in which tests run the program.
+// Temporary folder in which command lines run. A start of the program takes longer than most verbs, so they run in the
+// test's process.
 class Folder : public TemporaryFolder {
  public:
   Folder() {
@@ -54,8 +55,11 @@ class Folder : public TemporaryFolder {
   }
   bool has(const std::string& name) const { return std::filesystem::exists(path() / name); }
 
-  // Runs the program. `arguments` are parsed by a shell; `in` is the standard input.
+  // Runs a command line in this process. Quotes and backslashes in `arguments` are those of a shell; `in` is the
+  // standard input. Signals, pipes, limits and variables of the environment need run_script().
   Result run(const std::string& arguments, const std::string& in = "") const;
+  // As run(). Returns the output and the messages together, as a terminal shows them.
+  std::string transcript(const std::string& arguments) const;
   // Runs shell commands in the folder; $fathom is the program.
   Result run_script(const std::string& lines) const;
 };

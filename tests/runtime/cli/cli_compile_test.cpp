@@ -38,11 +38,11 @@ TEST_CASE("dump and asm are inverse, to the byte", "[cli]") {
   for (const char* flags : {"", "--strip", "--no-text", "--strip --no-text"}) {
     CAPTURE(flags);
     REQUIRE(folder.run(std::string("compile two.json -o a.fbc ") + flags).code == 0);
-    const Result script = folder.run_script(
-        "$fathom dump --stage file a.fbc > a.txt && $fathom asm a.txt -o b.fbc && cmp a.fbc b.fbc && "
-        "$fathom dump --stage file a.fbc | $fathom asm - -o - | cmp - a.fbc");
-    CAPTURE(script.err);
-    CHECK(script.code == 0);
+    const std::string listing = folder.run("dump --stage file a.fbc").out;
+    folder.write("a.txt", listing);
+    REQUIRE(folder.run("asm a.txt -o b.fbc").code == 0);
+    CHECK((folder.read("b.fbc") == folder.read("a.fbc")));
+    CHECK((folder.run("asm - -o -", listing).out == folder.read("a.fbc")));
   }
 }
 
@@ -117,16 +117,25 @@ TEST_CASE("a compiled scene's picture lies beside it under the name that the sce
   folder.write("a/far.json", scene((folder.path() / "a/sky.hdr").string()));
   for (const char* name : {"near", "far"}) {
     CAPTURE(name);
-    const Result script =
-        folder.run_script(std::string("set -e; n=") + name +
-                          "; $fathom compile a/$n.json -o a/$n.fbc; cd a; $fathom compile $n.json -o same.fbc; cmp "
-                          "same.fbc $n.fbc; cd ..;"
-                          "$fathom compile $PWD/a/$n.json -o same.fbc; cmp same.fbc a/$n.fbc; cp a/$n.fbc b/;"
-                          "$fathom render a/$n.json -q -s 1 -o one.exr; $fathom render b/$n.fbc -q -s 1 -o two.exr; "
-                          "cmp one.exr two.exr;"
-                          "$fathom dump --stage file b/$n.fbc | $fathom asm - -o - | cmp - a/$n.fbc");
-    CHECK(script.code == 0);
-    CHECK(script.err.find("proved") == std::string::npos);
+    const std::string json = name + std::string(".json"), fbc = name + std::string(".fbc");
+    const auto run = [&](const std::string& arguments, const std::string& in = "") {
+      const Result result = folder.run(arguments, in);
+      CAPTURE(arguments, result.err);
+      CHECK(result.code == 0);
+      CHECK(result.err.find("proved") == std::string::npos);
+      return result.out;
+    };
+    run("compile a/" + json + " -o a/" + fbc);
+    const std::string compiled = folder.read("a/" + fbc);
+    CHECK(folder.run_script("cd a; $fathom compile " + json + " -o same.fbc").code == 0);
+    CHECK((folder.read("a/same.fbc") == compiled));
+    run("compile " + (folder.path() / "a" / json).string() + " -o same.fbc");
+    CHECK((folder.read("same.fbc") == compiled));
+    folder.write("b/" + fbc, compiled);
+    run("render a/" + json + " -q -s 1 -o one.exr");
+    run("render b/" + fbc + " -q -s 1 -o two.exr");
+    CHECK((folder.read("one.exr") == folder.read("two.exr")));
+    CHECK((run("asm - -o -", run("dump --stage file b/" + fbc)) == compiled));
   }
 }
 
@@ -207,10 +216,12 @@ TEST_CASE("a damaged file is refused with its name, and nothing is written", "[c
 TEST_CASE("programs that the text in their file does not make run, and check refuses them", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
-  REQUIRE(folder
-              .run_script("$fathom dump --stage file ball.fbc | sed 's/ sphere 0.5 / sphere 0.25 /' | "
-                          "$fathom asm - -o other.fbc")
-              .code == 0);
+  std::string listing = folder.run("dump --stage file ball.fbc").out;
+  const std::string radius = " sphere 0.5 ";
+  for (std::size_t at = 0; (at = listing.find(radius, at)) != listing.npos;) {
+    listing.replace(at, radius.size(), " sphere 0.25 ");
+  }
+  REQUIRE(folder.run("asm - -o other.fbc", listing).code == 0);
   CHECK(folder.run("eval other.fbc --at 3,0,0").out.starts_with("2.75 "));
   CHECK_THAT(folder.run("dump other.fbc").out, Contains("(claimed)"));
   const Result refused = folder.run("check other.fbc");
@@ -228,9 +239,9 @@ TEST_CASE("what is wrong with a whole file is said in the format that was asked 
   REQUIRE(folder.run("asm two.fasm -o two.fbc").code == 0);
   for (const auto& [arguments, name] : {std::pair{"asm two.fasm -o out.fbc", "two.fasm"},
                                         {"eval two.fbc --at 0,0,0", "two.fbc"},
-                                        {"eval - --at 0,0,0 < two.fbc", "<stdin>"}}) {
-    const Result result =
-        folder.run_script("\"$fathom\" " + std::string(arguments) + " --error-format json --limit instructions=2");
+                                        {"eval - --at 0,0,0", "<stdin>"}}) {
+    const Result result = folder.run(std::string(arguments) + " --error-format json --limit instructions=2",
+                                     folder.read("two.fbc"));
     INFO(arguments << result.err);
     CHECK_THAT(result.err, Contains("\"code\":\"E0701\"") && Contains("\"file\":\"" + std::string(name)) &&
                                Contains("program `distance`: ") && Contains("--limit instructions=3"));

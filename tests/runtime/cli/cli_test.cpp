@@ -268,11 +268,48 @@ TEST_CASE("cli: -v says more each time, up to six", "[cli]") {
   CHECK(folder.run("render ball.json -o a.png -q").err == "");
 }
 
+TEST_CASE("cli: the program does as its verbs do in the tests' process", "[cli]") {
+  const Folder folder;
+  folder.write("a 'b' \\.json", kBall);
+  folder.write("bad.json", "{");
+  for (const char* arguments :
+       {"", "--help", "-V", "check ball.json", "check bad.json", "eval bad.json --at 0,0,0", "eval - --at 0,2,0",
+        "check missing.json", "render ball.json --sppp", "check \"a 'b' \\\\.json\"", "check a\\ \\'b\\'\\ \\\\.json",
+        "check 'a '\"'b'\"' \\.json'", "check ''"}) {
+    CAPTURE(arguments);
+    const Result inside = folder.run(arguments, kBall);
+    const Result program = folder.run_script("unset COLUMNS; $fathom " + std::string(arguments) + " <ball.json");
+    CHECK(program.code == inside.code);
+    CHECK(program.out == inside.out);
+    CHECK(program.err == inside.err);
+  }
+}
+
+TEST_CASE("cli: standard output that is full or closed is exit code 74", "[cli]") {
+  for (const char* output : {">/dev/full", ">&-"}) {
+    CAPTURE(output);
+    const Result result = Folder().run_script(std::string("$fathom --help ") + output);
+    CHECK(result.code == 74);
+    CHECK_THAT(result.err, Contains("cannot write to standard output"));
+  }
+}
+
+TEST_CASE("cli: messages on a terminal have colours, unless NO_COLOR or TERM forbids them", "[cli]") {
+  const Folder folder;
+  folder.write("bad.json", "{");
+  const auto shown = [&](const std::string& variables) {
+    return folder.run_script(variables + " script -qec \"'$fathom' check bad.json\" /dev/null").out;
+  };
+  CHECK_THAT(shown("NO_COLOR= TERM=xterm"), Contains("bad.json") && Contains("\033["));
+  CHECK_THAT(shown("NO_COLOR=1 TERM=xterm"), Contains("bad.json") && !Contains("\033["));
+  CHECK_THAT(shown("NO_COLOR= TERM=dumb"), Contains("bad.json") && !Contains("\033["));
+}
+
 TEST_CASE("cli: output that is not a terminal has no colours and no redrawn lines", "[cli]") {
   const Folder folder;
   folder.write("bad.json", "{");
   for (const char* arguments : {"render ball.json -o a.png", "check bad.json"}) {
-    CHECK_THAT(folder.run(arguments).err, !Contains("\033") && !Contains("\r"));
+    CHECK_THAT(folder.run_script("$fathom " + std::string(arguments)).err, !Contains("\033") && !Contains("\r"));
   }
 }
 

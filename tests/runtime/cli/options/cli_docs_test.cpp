@@ -54,7 +54,7 @@ int check_console(const Folder& folder, const std::string& block) {
     std::string shown = block.substr(end + 1, next - end - 1);
     INFO(command);
     REQUIRE(command.starts_with("fathom "));
-    std::string printed = folder.run_script("\"$fathom\" " + command.substr(7) + " 2>&1").out;
+    std::string printed = folder.transcript(command.substr(7));
     if (shown.ends_with("\n...\n")) {
       shown.resize(shown.size() - 4);
       printed.resize(std::min(printed.size(), shown.size()));
