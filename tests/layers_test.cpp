@@ -81,6 +81,7 @@ const std::vector<std::string> kFolders = {
     "bindings/cpp",
     "bindings/c",
     "bindings/python",
+    "bindings",
 };
 
 // Folders of runtime/ that are not the renderer's: they use any part of the compiler.

@@ -38,8 +38,8 @@ inline const char* const kTwo = R"({
 std::string program_path();
 bool is_sanitized();  // true if the program was built with the sanitizers
 
-// Temporary folder in which command lines run. A start of the program takes longer than most verbs, so they run in the
-// test's process.
+// Temporary folder in which command lines run. A start of the program takes longer than most verbs, so they run in
+// the test's process.
 class Folder : public TemporaryFolder {
  public:
   Folder() {

@@ -240,8 +240,8 @@ TEST_CASE("what is wrong with a whole file is said in the format that was asked 
   for (const auto& [arguments, name] : {std::pair{"asm two.fasm -o out.fbc", "two.fasm"},
                                         {"eval two.fbc --at 0,0,0", "two.fbc"},
                                         {"eval - --at 0,0,0", "<stdin>"}}) {
-    const Result result = folder.run(std::string(arguments) + " --error-format json --limit instructions=2",
-                                     folder.read("two.fbc"));
+    const Result result =
+        folder.run(std::string(arguments) + " --error-format json --limit instructions=2", folder.read("two.fbc"));
     INFO(arguments << result.err);
     CHECK_THAT(result.err, Contains("\"code\":\"E0701\"") && Contains("\"file\":\"" + std::string(name)) &&
                                Contains("program `distance`: ") && Contains("--limit instructions=3"));

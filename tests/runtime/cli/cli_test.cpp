@@ -272,9 +272,8 @@ TEST_CASE("cli: the program does as its verbs do in the tests' process", "[cli]"
   const Folder folder;
   folder.write("a 'b' \\.json", kBall);
   folder.write("bad.json", "{");
-  for (const char* arguments :
-       {"", "-V", "eval - --at 0,2,0", "check bad.json", "eval missing.json --at 0,0,0",
-        "check \"a 'b' \\\\.json\" a\\ \\'b\\'\\ \\\\.json 'a '\"'b'\"' \\.json' ''"}) {
+  for (const char* arguments : {"", "-V", "eval - --at 0,2,0", "check bad.json", "eval missing.json --at 0,0,0",
+                                "check \"a 'b' \\\\.json\" a\\ \\'b\\'\\ \\\\.json 'a '\"'b'\"' \\.json' ''"}) {
     CAPTURE(arguments);
     const Result inside = folder.run(arguments, kBall);
     const Result program = folder.run_script("unset COLUMNS; $fathom " + std::string(arguments) + " <ball.json");

@@ -87,8 +87,8 @@ TEST_CASE("cli frames: which there are", "[cli]") {
         folder.run("render hop.fathom -q --size 2x2 --frames " + std::string(each.frames) + " -o x.png");
     INFO(each.frames << result.err);
     CHECK(result.code == 0);
-    const Result files = folder.run_script(
-        "for f in $(ls x-*.png | sort -V); do f=${f#x-}; printf '%s ' ${f%.png}; done; rm x*");
+    const Result files =
+        folder.run_script("for f in $(ls x-*.png | sort -V); do f=${f#x-}; printf '%s ' ${f%.png}; done; rm x*");
     CHECK(files.out == each.files);
   }
   for (const char* wrong :
@@ -104,7 +104,8 @@ TEST_CASE("cli frames: files are named by number, in the place of #, before the 
   const Frames folder;
   std::filesystem::create_directory(folder.path() / "dir.d");
   const Result result = folder.run(
-      "render hop.fathom -q --size 2x2 --frames 12 -a -d -n --denoise -o 'shot.##.exr' -o ./b.png -o c#.pfm -o dir.d/ "
+      "render hop.fathom -q --size 2x2 --frames 12 -a -d -n --denoise -o 'shot.##.exr' -o ./b.png -o c#.pfm -o "
+      "dir.d/ "
       "--format jpg --cost-map cost.png --stats-json stats.json");
   INFO(result.err);
   CHECK(result.code == 0);
