@@ -24,7 +24,7 @@ if(FATHOM_SANITIZE)
   endif()
   # -no-pie saves every start the relocation of half a million addresses in AddressSanitizer's descriptions of
   # globals.
-  target_link_options(fathom_flags INTERFACE -fsanitize=address,undefined -no-pie)
+  target_link_options(fathom_flags INTERFACE -fsanitize=address,undefined $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
 endif()
 if(FATHOM_FUZZ)
   if(NOT FATHOM_SANITIZE OR NOT CMAKE_CXX_COMPILER_ID MATCHES "Clang")
@@ -38,7 +38,7 @@ endif()
 set(renderer_flags ${product_flags})
 if(FATHOM_SANITIZE_THREAD)
   set(renderer_flags -O1 -g1 -UNDEBUG -fsanitize=thread)
-  target_link_options(fathom_flags INTERFACE -fsanitize=thread -no-pie)
+  target_link_options(fathom_flags INTERFACE -fsanitize=thread $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
 endif()
 
 # compile_together(target): compiles several sources of a target together: most of the time to compile a single source
@@ -47,6 +47,6 @@ endif()
 # sources that Highway compiles per instruction set.
 function(compile_together target)
   if(FATHOM_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 24)
   endif()
 endfunction()

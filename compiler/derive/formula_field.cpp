@@ -18,9 +18,9 @@ double magnitude_of(double float_error) { return std::isfinite(float_error) ? fl
 // `at_surface`: the slope near the surface, or 0 if it is not known.
 FormulaProof proof_by(const FormulaBound& bound, double at_surface) {
   // Below this ratio, the evaluations that bounds in cells save do not repay them in a short formula.
-  constexpr double kSteep = 32;
+  constexpr double kSteepRatio = 32;
   if (std::isfinite(bound.lipschitz)) {
-    return at_surface > 0 && bound.lipschitz > kSteep * at_surface ? FormulaProof::Steep : FormulaProof::Proved;
+    return at_surface > 0 && bound.lipschitz > kSteepRatio * at_surface ? FormulaProof::Steep : FormulaProof::Proved;
   }
   // Cells are of use only if some of them have a bound.
   constexpr double kMaxUnbounded = 0.9;
@@ -44,8 +44,8 @@ NodeId bounded(NodeMaker& maker, NodeId field, const Box& box, double lipschitz,
 // Estimates the Lipschitz constant of a formula without a proved constant. The slopes that the search has seen next
 // to a place of infinite slope say how near the search came.
 double estimated(const FormulaBound& bound, double at_surface) {
-  constexpr double kMost = 64;  // of the slope near the surface
-  const double seen = at_surface > 0 ? std::min(bound.seen, kMost * at_surface) : bound.seen;
+  constexpr double kMaxSeenRatio = 64;  // of the slope near the surface
+  const double seen = at_surface > 0 ? std::min(bound.seen, kMaxSeenRatio * at_surface) : bound.seen;
   return std::max(1.0, 1.5 * seen);
 }
 

@@ -14,7 +14,7 @@ namespace fathom::runtime {
 namespace {
 
 // Minimum probability of near lights, and of those beyond the scene, when there are both: estimates may be far off.
-constexpr float kMinShare = 0.25f;
+constexpr float kMinLightShare = 0.25f;
 
 float cosine_of_degrees(double degrees) { return static_cast<float>(vm::real::cos(degrees * vm::real::kDegree)); }
 
@@ -128,7 +128,7 @@ Lights::SelectionProbabilities Lights::selection_probabilities(const LightSample
   const float beyond = environment + directional;
   if (!(near + beyond > 0)) return {0, 0, 0};
   float share = near / (near + beyond);
-  if (near > 0 && beyond > 0) share = std::clamp(share, kMinShare, 1 - kMinShare);
+  if (near > 0 && beyond > 0) share = std::clamp(share, kMinLightShare, 1 - kMinLightShare);
   const float rest = beyond > 0 ? (1 - share) / beyond : 0;
   return {share, rest * environment, rest * directional};
 }

@@ -14,7 +14,7 @@ constexpr int kDepthsPerCell = 16, kEvenDepths = 32;
 constexpr int kAllDepths = static_cast<int>(std::size(kFineDepths)) + kEvenDepths;
 constexpr int kNewtonSteps = 4;
 // Number of cells by which the mesh may fall short of a sharp edge or tip, which is thin at any resolution.
-constexpr int kReach = 2;
+constexpr int kReachCells = 2;
 
 double depth(int i) {
   constexpr int kFine = static_cast<int>(std::size(kFineDepths));
@@ -102,7 +102,7 @@ class LostPartSearch {
         if (beyond) last = i;
       }
       // The other side further than a cell away is a part of another cell.
-      if (first < 0 || depth(first) > 1 || is_near_crossed(signs_, searches_[s].cell, kReach)) continue;
+      if (first < 0 || depth(first) > 1 || is_near_crossed(signs_, searches_[s].cell, kReachCells)) continue;
       lost.push_back(s);
       thickness.push_back(depth(last) * lattice_.cell);
       places.push_back(searches_[s].point + depth(first) * lattice_.cell * searches_[s].towards);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kJump = 8;
 // Distance of the neighbouring points from the hit, in offsets, and length along the ray within which they are
 // sought, in such distances, each way. A surface at a flatter angle to the ray keeps its gradient.
-constexpr double kAside = 32, kReach = 16;
+constexpr double kAside = 32, kReachSteps = 16;
 constexpr int kHalvings = 40;
 
 class JumpSearch {
@@ -50,7 +50,7 @@ class JumpSearch {
 
   // Returns the place of the change of sign on the line along the ray through `middle`.
   std::optional<glm::dvec3> cross(glm::dvec3 middle) const {
-    const double reach = kReach * kAside * query_.offset;
+    const double reach = kReachSteps * kAside * query_.offset;
     double near = reach, far = -reach;  // along wo
     const bool near_solid = value(middle + near * query_.wo) < 0;
     if ((value(middle + far * query_.wo) < 0) == near_solid) return std::nullopt;

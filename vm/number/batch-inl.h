@@ -177,12 +177,14 @@ struct FloatLayout<double> {
   static constexpr std::int64_t kRootHalf = 0x3fe6a09e667f3bcd;
 };
 
-// Returns 2^n for an integer n in [1 - bias, bias].
+// Returns 2^n for an integer n in [1 - bias, bias], and any number for NaN.
 template <class S>
 HWY_INLINE BatchOf<S> power_of_two(BatchOf<S> n) {
   using Layout = FloatLayout<S>;
   const hn::RebindToSigned<hn::ScalableTag<S>> ints;
-  const auto biased = hn::Add(hn::ConvertTo(ints, n.v), hn::Set(ints, Layout::kBias));
+  // Vectors convert NaN to some number. In portable code, as in C++, the conversion is undefined.
+  const auto defined = HWY_TARGET == HWY_SCALAR ? hn::IfThenElseZero(hn::Eq(n.v, n.v), n.v) : n.v;
+  const auto biased = hn::Add(hn::ConvertTo(ints, defined), hn::Set(ints, Layout::kBias));
   return {hn::BitCast(hn::ScalableTag<S>(), hn::ShiftLeft<Layout::kMantissaBits>(biased))};
 }
 template <class S>

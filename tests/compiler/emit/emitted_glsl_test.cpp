@@ -10,6 +10,7 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "compiler/emit/emit.h"
 #include "compiler/emit/language.h"
@@ -17,6 +18,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/compiled.h"
 #include "tests/support/emitted_programs.h"
+#include "tests/support/not_run.h"
 #include "tests/support/random/random_scene.h"
 #include "tests/support/temporary_folder.h"
 #include "vm/interpret/evaluate.h"
@@ -114,6 +116,7 @@ TEST_CASE("a template of GLSL has more numbers than a uniform block holds in its
 }
 
 TEST_CASE("emitted GLSL is GLSL ES 3.00 and GLSL 3.30", "[emit]") {
+  if (std::string_view(FATHOM_GLSLANG).empty()) return test::not_run("glslangValidator is missing");
   const test::TemporaryFolder folder;
   for (const char* version : {"300 es", "330"}) {
     std::ofstream(folder.path() / "scene.frag") << shader(version);

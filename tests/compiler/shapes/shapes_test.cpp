@@ -231,7 +231,7 @@ TEST_CASE("a mandelbulb's bailout to its power is at most 10^18, to the unit", "
                                                {9, 100}, {12, 31}, {17, 11},   {18, 10},  {19, 8},   {24, 5}};
   const NodeSpec& row = compiler::spec(Kind::Mandelbulb);
   for (const auto& [power, bailout] : largest) {
-    const auto refused = [&](double of) { return row.check(std::vector{power, 8.0, of, 0.001}); };
+    const auto refused = [&, p = power](double of) { return row.check(std::vector{p, 8.0, of, 0.001}); };
     CAPTURE(power);
     CHECK_FALSE(refused(bailout));
     REQUIRE(refused(bailout + 1));

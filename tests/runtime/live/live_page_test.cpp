@@ -7,9 +7,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "tests/support/catch.h"
 #include "tests/support/compiled.h"
+#include "tests/support/not_run.h"
 #include "tests/support/temporary_folder.h"
 
 namespace fathom::test::live_page_test {
@@ -109,6 +111,7 @@ TEST_CASE("the shader of a live page depends on the scene's structure alone", "[
 }
 
 TEST_CASE("the shader of a live page is GLSL ES 3.00", "[live]") {
+  if (std::string_view(FATHOM_GLSLANG).empty()) return test::not_run("glslangValidator is missing");
   const test::TemporaryFolder folder;
   const std::string shader = scene_of(runtime::live_page(test::compiled(kScene)))["shader"];
   for (const char* defined : {"", "#define COPY_NUMBERS\n"}) {

@@ -62,8 +62,8 @@ TEST_CASE("text: the JSON scene of a text is the same scene", "[frontend][text]"
       "param n = 7\nobject \"posts\" [for i in 0..n: cylinder(0.1 + 0.02*i, random(i)).translate([i, 0, 0])]",
       "param r(min = 0.1) = 0.5\nlet d = 2*r\nobject sphere(d + 1/3).translate([d^2, sqrt(r), -r])",
       "def wave(n) = 0.01*sin(n*x)*sin(n*y)\nobject sphere(1).displacement(wave(20) + wave(31))",
-      "let skin = principled(color = [0.2 + 0.6*smoothstep(0, 1, x), 0.3, clamp(y, 0, 1)])\n"
-      "object box([1, 1, 1]).material(skin)",
+      ("let skin = principled(color = [0.2 + 0.6*smoothstep(0, 1, x), 0.3, clamp(y, 0, 1)])\n"
+       "object box([1, 1, 1]).material(skin)"),
       "object expression(let a = x*y let b = a + a in (a*b - a)/4 + z, half_size = [1, 1, 1])",
   };
   for (const char* const body : texts) {
