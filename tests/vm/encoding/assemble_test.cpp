@@ -30,7 +30,7 @@ void refused(const std::string& text, const std::string& at, const std::string& 
   INFO(text);
   REQUIRE(error != nullptr);
   CHECK(text.substr(error->begin, error->end - error->begin) == at);
-  CHECK_THAT(error->reason, Catch::Matchers::Contains(reason));
+  CHECK_THAT(error->reason, Catch::Contains(reason));
 }
 
 }  // namespace

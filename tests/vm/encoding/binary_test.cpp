@@ -94,7 +94,7 @@ TEST_CASE("what the bytes declare must be what the code is", "[encoding][binary]
   CHECK(changed(4, 2) == "declares stacks of 2 values and 1 points; the code reaches 1 and 1");
   CHECK(changed(8, 3) == "declares stacks of 1 values and 3 points; the code reaches 1 and 1");
   CHECK(changed(28, 2) == "the unrounded constants are not in order, or beyond the code");
-  CHECK_THAT(changed(39, 0xff), Catch::Matchers::Contains("not finite") || Catch::Matchers::Contains("in the code"));
+  CHECK_THAT(changed(39, 0xff), Catch::Contains("not finite") || Catch::Contains("in the code"));
 }
 
 // Compiled files record the version of the machine that their programs are for. If this test fails, some opcode
