@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "tests/support/catch.h"
+#include "tests/support/not_run.h"
 #include "tests/support/program.h"
 
 namespace fathom::cli_test {
@@ -295,6 +296,7 @@ TEST_CASE("cli: standard output that is full or closed is exit code 74", "[cli]"
 TEST_CASE("cli: messages on a terminal have colours, unless NO_COLOR or TERM forbids them", "[cli]") {
   const Folder folder;
   folder.write("bad.json", "{");
+  if (folder.run_script("script -qec true /dev/null").code != 0) return fathom::test::not_run("no pseudo-terminals");
   const auto shown = [&](const std::string& variables) {
     return folder.run_script(variables + " script -qec \"'$fathom' check bad.json\" /dev/null").out;
   };
