@@ -20,6 +20,7 @@ make_debian() {
 }
 
 leave_debian() {
+  [[ -n ${root-} ]] || return 0  # none was made, and the paths would be the machine's own
   umount "$root/dev/pts" "$root/dev" "$root/proc" 2>/dev/null || true
 }
 
