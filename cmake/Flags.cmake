@@ -12,6 +12,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(fathom_flags INTERFACE $<$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>:-Wno-restrict>)
 endif()
 
+# Flags of code that runs once per scene or command: there -O3 takes more time to compile than it saves.
+set(run_once_flags $<$<NOT:$<CONFIG:Debug>>:-O1>)
+
 # Flags of the product. The sanitizers instrument the product but not the tests.
 set(product_flags)
 if(FATHOM_SANITIZE)

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "tests/support/plain_lowering.h"
 #include "tests/support/random/random_scene.h"
 #include "vm/interpret/evaluate.h"

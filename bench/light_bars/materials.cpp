@@ -1,7 +1,7 @@
 // B18: albedo of rough mirrors. B19: reciprocity and energy conservation.
 #include <cmath>
 
-#include "bench/light_bars.h"
+#include "bench/light_bars/light_bars.h"
 #include "runtime/material/directional_albedo.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/materials.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "bench/light_bars.h"
+#include "bench/light_bars/light_bars.h"
 #include "runtime/light/environment.h"
 #include "runtime/sampling/camera.h"
 #include "runtime/sampling/filter.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "bench/closed_forms.h"
 #include "bench/measured_hits.h"
 #include "runtime/path/surface.h"

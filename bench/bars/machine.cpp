@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "bench/closed_forms.h"
 #include "bench/clouds.h"
 #include "runtime/march/march.h"

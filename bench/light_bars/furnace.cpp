@@ -7,7 +7,7 @@
 // the second result counts.
 #include <cmath>
 
-#include "bench/light_bars.h"
+#include "bench/light_bars/light_bars.h"
 #include "runtime/render.h"
 #include "tests/support/light_scenes.h"
 

@@ -1,10 +1,10 @@
 // B6 to B9: camera rays and bounce rays in benchmark scene H, against the independent solver.
 #include <optional>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
+#include "bench/bars/interval_solver.h"
 #include "bench/closed_forms.h"
 #include "bench/clouds.h"
-#include "bench/interval_solver.h"
 #include "bench/measured_hits.h"
 #include "runtime/measure/stopwatch.h"
 

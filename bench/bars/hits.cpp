@@ -1,7 +1,7 @@
 // B4: hits of unit-scale solids. B5: rays that graze a sphere, and rays that barely miss the sphere.
 #include <cstdlib>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "bench/closed_forms.h"
 #include "bench/measured_hits.h"
 

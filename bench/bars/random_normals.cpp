@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "compiler/shapes/make_node.h"
 #include "runtime/path/surface.h"
 #include "tests/support/plain_lowering.h"

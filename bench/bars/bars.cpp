@@ -4,7 +4,7 @@
 //
 //     build/release/bench_bars           two minutes
 //     build/release/bench_bars --full    as many rays, normals and samples as the bars ask for: ten minutes
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 
 #include <limits>
 

@@ -6,7 +6,7 @@
 // both have the same mean, the cells' p-values are uniform in [0,1], and none is below Sidak's level for all cells.
 #include <cmath>
 
-#include "bench/light_bars.h"
+#include "bench/light_bars/light_bars.h"
 #include "runtime/render.h"
 #include "tests/support/chi_square.h"
 #include "tests/support/light_scenes.h"

@@ -1,4 +1,4 @@
-#include "bench/interval_solver.h"
+#include "bench/bars/interval_solver.h"
 
 #include <glm/geometric.hpp>
 #include <optional>

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "bench/bars.h"
+#include "bench/bars/bars.h"
 #include "compiler/compile.h"
 
 namespace fathom::bench {

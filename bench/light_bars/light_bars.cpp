@@ -3,7 +3,7 @@
 //     build/release/bench_light_bars           a few minutes on two cores
 //     build/release/bench_light_bars --full    half the errors, many more cases and images
 //     build/release/bench_light_bars B20 B21   only these bars
-#include "bench/light_bars.h"
+#include "bench/light_bars/light_bars.h"
 
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 // both ends. A part holds the first root when the sign changes and the field falls all the way. Every other part is
 // cut in two, near half first. Source: Mitchell, "Robust Ray Intersection with Interval Arithmetic", 1990.
 //
-// Tested by: bench/bars_composite.cpp, which compares this and two other searches ray by ray.
+// Tested by: bench/bars/composite.cpp, which compares this and two other searches ray by ray.
 #pragma once
 
 #include <glm/vec3.hpp>
