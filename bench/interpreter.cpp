@@ -13,7 +13,7 @@
 
 #include "bench/clouds.h"
 #include "bench/comparison.h"
-#include "bench/compiled_scenes.h"
+#include "bench/compiled_scenes/compiled_scenes.h"
 #include "vm/native/native_program.h"
 
 namespace {

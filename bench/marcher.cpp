@@ -11,7 +11,7 @@
 
 #include "bench/clouds.h"
 #include "bench/comparison.h"
-#include "bench/compiled_scenes.h"
+#include "bench/compiled_scenes/compiled_scenes.h"
 #include "runtime/march/march.h"
 #include "runtime/path/surface.h"
 #include "runtime/sampling/camera.h"

@@ -7,7 +7,7 @@
 
 #include "bench/clouds.h"
 #include "bench/comparison.h"
-#include "bench/compiled_scenes.h"
+#include "bench/compiled_scenes/compiled_scenes.h"
 #include "bench/fathom_workloads.h"
 
 namespace {

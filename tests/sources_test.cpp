@@ -1,5 +1,6 @@
 // Rules that the text of every source file keeps. Includes: tests/layers_test.cpp. Comments: tests/house.
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -140,8 +141,9 @@ bool calls_libm(const SourceFile& file, std::size_t at) {
   const auto is_mark = [&](std::size_t i, std::string_view mark) { return i < tokens.size() && tokens[i].is(mark); };
   if (at > 0 && (is_mark(at - 1, ".") || is_mark(at - 1, "->"))) return false;  // a member
   if (at > 0 && is_mark(at - 1, "::")) {
-    const bool named = at > 1 && tokens[at - 2].kind == Token::Kind::Word;
-    return !named || tokens[at - 2].text == "std" || tokens[at - 2].text == "glm";
+    if (at < 2 || tokens[at - 2].kind != Token::Kind::Word) return true;
+    constexpr std::array kWithLibm = {"std", "glm", "return", "else", "case", "throw", "co_return", "not", "and", "or"};
+    return std::ranges::find(kWithLibm, tokens[at - 2].text) != kWithLibm.end();
   }
   if (!is_mark(at + 1, "(") || is_of_machine(file)) return false;
   return !((name == "exp" || name == "log") && includes_elementary(file));
@@ -192,7 +194,7 @@ TEST_CASE("sources: a call of libm is found however it is written", "[house]") {
     return false;
   };
   for (const char* text : {"std::pow(x, y)", "::expf(x)", "exp(x)", "std :: log (x)", "glm::sin(v)",
-                           "map(v, std::cos)", "int n = 1'000; f(std::tan(x));", "using std::hypot;"}) {
+                           "map(v, std::cos)", "return ::exp(x);", "int n = 1'000; f(std::tan(x));", "using std::hypot;"}) {
     CAPTURE(text);
     CHECK(is_found(text));
   }

@@ -1,7 +1,6 @@
 // The functions that asmjit calls when its own assertions fail. Debian's libasmjit.a has them in an object that uses
 // stderr in a way that no shared library can. The linker takes that object only for functions that are not defined
 // elsewhere.
-#if defined(__x86_64__)
 #include <asmjit/core.h>
 
 #include <cstdlib>
@@ -13,4 +12,3 @@ void DebugUtils::debugOutput(const char*) noexcept {}
 void DebugUtils::assertionFailed(const char*, int, const char*) noexcept { std::abort(); }
 
 }  // namespace asmjit
-#endif

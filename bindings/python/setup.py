@@ -1,7 +1,7 @@
 """Builds the module with CMake from the source tree: pip install ./bindings/python
 
-Needs the packages of scripts/install-packages, and Debian's pybind11-dev and python3-dev. CMAKE_ARGS may hold further
-options of CMake, e.g. -DFATHOM_ISAS=host.
+Needs the packages of `scripts/install-packages python`. CMAKE_ARGS may hold further options of CMake, e.g.
+-DFATHOM_ISAS=host.
 """
 import os
 import pathlib

@@ -35,9 +35,11 @@ namespace {
 
 void set_handlers(std::string_view verb) {
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding the limit of file size makes a write fail instead of ending the program
-  std::signal(SIGUSR1, SIG_IGN);  // ignore requests for an image while there is none
-  // A reader of the messages may close its pipe before the render is done. Other verbs end with their reader.
-  if (verb == "render") std::signal(SIGPIPE, SIG_IGN);
+  if (verb == "render") {
+    std::signal(SIGUSR1, SIG_IGN);  // ignore requests for an image while there is none
+    // A reader of the messages may close its pipe before the render is done. Other verbs end with their reader.
+    std::signal(SIGPIPE, SIG_IGN);
+  }
   std::set_terminate(end_at_once);
   std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // a failed CHECK aborts after its message
 }

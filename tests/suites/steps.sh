@@ -1,4 +1,4 @@
-# Sourced by .ci/run and scripts/nightly.
+# Sourced by scripts that run steps.
 
 rows=() passed=0 failed=0
 

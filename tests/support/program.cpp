@@ -40,7 +40,7 @@ std::vector<std::string> words_of(std::string_view arguments) {
       if (word) words.push_back(*std::exchange(word, std::nullopt));
       continue;
     }
-    if (is_any_of(quote == 0 ? "$`|&;<>()*?[" : quote == '"' ? "$`" : "")) {
+    if (is_any_of(quote == 0 ? word ? "$`|&;<>()*?[{" : "$`|&;<>()*?[{~#" : quote == '"' ? "$`" : "")) {
       FAIL("only a shell understands `" << c << "` in: " << arguments);
     }
     if (!word) word.emplace();
@@ -50,6 +50,7 @@ std::vector<std::string> words_of(std::string_view arguments) {
       quote = 0;
     } else if (c == '\\' && quote != '\'') {
       REQUIRE(++i < arguments.size());
+      if (quote == '"' && std::string_view("$`\"\\\n").find(arguments[i]) == std::string_view::npos) *word += c;
       *word += arguments[i];
     } else {
       *word += c;

@@ -63,7 +63,7 @@ HWY_INLINE void store(std::size_t size, std::size_t used, S* to, const Value& va
   constexpr std::size_t kWidth = kLanesOf<S>;
   for (std::size_t i = 0; i < used; ++i) {
     const std::size_t at = i * kWidth;
-    if (kWidth == 1 || at + kWidth <= size) {
+    if (kWidth == 1 || at + kWidth <= size) {  // one lane is always whole: g++ 14 warns of its copy below
       value(i).store(to + at);
     } else {
       alignas(64) S padded[kWidth];

@@ -81,7 +81,7 @@ class Formatter {
     const std::uint32_t column = by == &items_[i] || by->lines > 0 || i == 0 ? by->column : items_[i].column;
     const bool starts = levels_.empty() || (!by->closes() && column <= levels_.front());
     if (starts) {
-      levels_.assign(1, column);
+      levels_.assign(1, column);  // of `= {column}` g++ 14 warns
       begins_statement_ = by->token;
     } else {
       while (levels_.size() > 1 && levels_.back() > column) levels_.pop_back();

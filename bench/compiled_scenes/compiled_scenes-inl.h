@@ -6,7 +6,7 @@
 #define FATHOM_BENCH_COMPILED_SCENES_INL
 #endif
 
-#include "bench/compiled_scenes.h"
+#include "bench/compiled_scenes/compiled_scenes.h"
 #include "bench/emitted_lanes.h"
 #include "bench/many_objects.h"
 #include "bench/packets-inl.h"

@@ -1,4 +1,4 @@
-#include "bench/compiled_scenes.h"
+#include "bench/compiled_scenes/compiled_scenes.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #define HWY_DISABLED_TARGETS HWY_SSSE3
 #endif
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bench/compiled_scenes.cpp"
+#define HWY_TARGET_INCLUDE "bench/compiled_scenes/compiled_scenes.cpp"
 // clang-format off
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
-#include "bench/compiled_scenes-inl.h"  // after the line above
+#include "bench/compiled_scenes/compiled_scenes-inl.h"  // after the line above
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
