@@ -62,8 +62,10 @@ class Maker {
 
   NodeId outline(int depth) {
     const int choice = depth == 0 ? 5 : random_.below(10);
-    if (choice == 0) return add(Kind::Round, {random_.length(0.01, 0.3)}, {outline(depth - 1)});
-    if (choice == 1) return add(Kind::Onion, {random_.length(0.01, 0.3)}, {outline(depth - 1)});
+    if (choice <= 1) {
+      const NodeId inner = outline(depth - 1);
+      return add(choice == 0 ? Kind::Round : Kind::Onion, {random_.length(0.01, 0.3)}, {inner});
+    }
     if (choice == 2) {
       const double scale = random_.length(0.5, 2), angle = random_.uniform(-4, 4);
       const double y = random_.uniform(-1, 1), x = random_.uniform(-1, 1);
@@ -200,7 +202,10 @@ NodeId random_formula(compiler::NodeMaker& maker, Random& random) {
   const auto of = [&](Kind kind, std::vector<NodeId> operands) { return maker.make(kind, {}, operands); };
   const auto coordinate = [&] { return of(static_cast<Kind>(static_cast<int>(Kind::X) + random.below(3)), {}); };
   const auto times = [&](NodeId a, double by) { return of(Kind::Multiply, {a, number(by)}); };
-  const auto wave = [&] { return of(Kind::Sin, {times(coordinate(), random.length(0.5, 8))}); };
+  const auto wave = [&] {
+    const double frequency = random.length(0.5, 8);
+    return of(Kind::Sin, {times(coordinate(), frequency)});
+  };
   NodeId formula = 0;
   Random other = random;  // a copy: draws for noise leave the later draws unchanged
   switch (random.below(4)) {
