@@ -20,7 +20,7 @@ make_debian() {
 # inside COMMANDS: runs commands of bash in the Debian, which sees the machine's processes, devices and way to Debian's
 # packages. They are mounted for the commands only.
 inside() {
-  unshare --mount bash -euc 'mount -t proc proc "$0/proc"; mount --bind /dev "$0/dev"; mount --bind /dev/pts "$0/dev/pts"
+  unshare --mount bash -euc 'mount -t proc proc "$0/proc"; mount --rbind /dev "$0/dev"
     exec chroot "$0" "$@"' "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
     DEBIAN_FRONTEND=noninteractive ${http_proxy:+http_proxy=$http_proxy} ${https_proxy:+https_proxy=$https_proxy} \
     ${no_proxy:+no_proxy=$no_proxy} bash -euo pipefail -c "$1"
