@@ -37,10 +37,10 @@ std::variant<Sequence, ExitCode> sequence_of(const FrameOptions& options, SceneI
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   const auto& animation = std::get<compiler::Animation>(read);
   if (!animation.time && !animation.frame) return fail_without_time(input, arguments, streams);
-  for (const auto& [name, value] : compiler::moment(animation, 0, 0)) {
-    const auto same = [&name = name](const auto& given) { return given.first == name; };
+  for (const auto& set : compiler::moment(animation, 0, 0)) {
+    const auto same = [&](const auto& given) { return given.first == set.first; };
     if (std::none_of(arguments.definitions.begin(), arguments.definitions.end(), same)) continue;
-    return fail(streams, kUsage, fmt::format("-D {} does not go with --frames, which sets it for each frame", name),
+    return fail(streams, kUsage, fmt::format("-D {} does not go with --frames, which sets it for each frame", set.first),
                 {"leave out one of them"});
   }
   if (options.all && !animation.frames) {
