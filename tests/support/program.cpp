@@ -40,7 +40,8 @@ std::vector<std::string> words_of(std::string_view arguments) {
       if (word) words.push_back(*std::exchange(word, std::nullopt));
       continue;
     }
-    if (is_any_of(quote == 0 ? word ? "$`|&;<>()*?[{" : "$`|&;<>()*?[{~#" : quote == '"' ? "$`" : "")) {
+    const bool begins_word = quote == 0 && !word;
+    if (is_any_of(quote == 0 ? "$`|&;<>()*?[{" : quote == '"' ? "$`" : "") || (begins_word && is_any_of("~#"))) {
       FAIL("only a shell understands `" << c << "` in: " << arguments);
     }
     if (!word) word.emplace();
