@@ -1,7 +1,7 @@
 // The node table: one row per kind of node; the enum Kind (compiler/graph/graph.h) has the number of each row. The
-// front end, the error messages, the schema, the graph printer, the bounds, the lowering and the tests read the table.
-// Similar rows share a file: solids.cpp, polyhedra.cpp, fractals.cpp, composed.cpp, outlines.cpp, round_outlines.cpp,
-// alterations.cpp, domain.cpp, repetition.cpp, combinators.cpp, functions.cpp.
+// front end, the error messages, the schema, the graph printer, the bounds, the lowering and the tests read the
+// table. Similar rows share a file: solids.cpp, polyhedra.cpp, fractals.cpp, composed.cpp, outlines.cpp,
+// round_outlines.cpp, alterations.cpp, domain.cpp, repetition.cpp, combinators.cpp, functions.cpp.
 //
 // Conventions, the same for every node:
 //   - primitives are centred at the origin, symmetric ones about the y axis (right-handed, y up);
