@@ -3,13 +3,22 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdint>
+
+#include "vm/encoding/printable.h"
 
 namespace fathom::vm {
 namespace {
 
-// First and last of the control characters U+0080 to U+009F, in UTF-8.
-constexpr std::string_view kFirstC1 = "\xC2\x80", kLastC1 = "\xC2\x9F";
 constexpr std::string_view kLetters = "nrt\\\"", kMeanings = "\n\r\t\\\"";
+
+// Encodes a character of at most three bytes.
+std::string to_utf8(unsigned code) {
+  const auto next = [&](unsigned shift) { return static_cast<char>(0x80 | (code >> shift & 0x3F)); };
+  if (code < 0x80) return {static_cast<char>(code)};
+  if (code < 0x800) return {static_cast<char>(0xC0 | code >> 6), next(0)};
+  return {static_cast<char>(0xE0 | code >> 12), next(6), next(0)};
+}
 
 std::string escape(std::string_view text, bool quotes) {
   std::string out;
@@ -18,10 +27,10 @@ std::string escape(std::string_view text, bool quotes) {
     if (const std::size_t known = kMeanings.find(c); known != kMeanings.npos && (quotes || c != '"')) {
       out += '\\';
       out += kLetters[known];
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-    } else if (text.substr(i, 2) >= kFirstC1 && text.substr(i, 2) <= kLastC1) {
-      out += fmt::format("\\u{:04x}", static_cast<unsigned>(static_cast<unsigned char>(text[++i])));
+    } else if (const std::size_t length = character_length(text.substr(i));
+               const auto code = hidden_code(text.substr(i, length))) {
+      out += fmt::format("\\u{:04x}", static_cast<std::uint32_t>(*code));
+      i += length - 1;
     } else {
       out += c;
     }
@@ -57,11 +66,10 @@ bool unescape(std::string_view text, std::string& out) {
       const std::string_view digits = text.substr(std::min(i + 1, text.size()), 4);
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
       if (text[i] != 'u' || digits.size() != 4 || error != std::errc() || end != digits.data() + 4 ||
-          (code >= 0x20 && code < 0x7f) || code > 0x9f) {
+          !hidden_code(to_utf8(code))) {
         return false;
       }
-      if (code > 0x7f) out += kFirstC1[0];
-      out += static_cast<char>(code);
+      out += to_utf8(code);
       i += 4;
     }
   }

@@ -2,11 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 namespace fathom::vm {
 namespace {
 
-// Returns the number of bytes of the UTF-8 character that begins the text, a control character or not, or 0 when the
-// text begins with no UTF-8 character. Source: RFC 3629, section 4.
+bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
+
+bool is_hidden(char32_t code) {
+  constexpr std::array<std::array<char32_t, 2>, 6> kRanges = {
+      {{0x061C, 0x061C}, {0x200B, 0x200B}, {0x200E, 0x200F}, {0x2028, 0x202E}, {0x2060, 0x2069}, {0xFEFF, 0xFEFF}}};
+  return is_control(code) ||
+         std::ranges::any_of(kRanges, [&](const auto& range) { return code >= range[0] && code <= range[1]; });
+}
+
+std::string escaped(char32_t code) { return fmt::format("\\u{:04x}", static_cast<std::uint32_t>(code)); }
+
+}  // namespace
+
+// Source: RFC 3629, section 4.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -21,17 +37,17 @@ std::size_t character_length(std::string_view text) {
   return overlong || beyond ? 0 : length;
 }
 
-bool is_control(std::string_view character) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
-  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7F;
-  return character.size() == 2 && byte(0) == 0xC2 && byte(1) < 0xA0;
+std::optional<char32_t> hidden_code(std::string_view character) {
+  if (character.empty() || character.size() > 3) return std::nullopt;
+  char32_t code = static_cast<unsigned char>(character[0]);
+  if (character.size() > 1) code &= character.size() == 2 ? 0x1F : 0x0F;
+  for (const char next : character.substr(1)) code = code << 6 | (static_cast<unsigned char>(next) & 0x3F);
+  return is_hidden(code) ? std::optional(code) : std::nullopt;
 }
-
-}  // namespace
 
 std::size_t printable_length(std::string_view text) {
   const std::size_t length = character_length(text);
-  return is_control(text.substr(0, length)) ? 0 : length;
+  return hidden_code(text.substr(0, length)) ? 0 : length;
 }
 
 bool is_utf8(std::string_view text) {
@@ -45,31 +61,34 @@ bool is_utf8(std::string_view text) {
 
 std::string printable(std::string_view text) {
   std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = printable_length(text.substr(at));
-    if (length > 0 || text[at] == '\n') {
-      out += text.substr(at, length > 0 ? length : 1);
+  for (std::size_t at = 0, length; at < text.size(); at += std::max<std::size_t>(length, 1)) {
+    length = character_length(text.substr(at));
+    const std::string_view character = text.substr(at, length);
+    const auto code = hidden_code(character);
+    if (code && !is_control(*code)) {
+      out += escaped(*code);
+    } else if (length == 0 || (code && character != "\n")) {
+      for (std::size_t i = 0; i < std::max<std::size_t>(length, 1); ++i) out += "\uFFFD";
     } else {
-      out += "\uFFFD";
+      out += character;
     }
-    at += length > 0 ? length : 1;
   }
   return out;
 }
 
 std::string escape_controls(std::string_view text) {
   std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text.substr(at));
+  for (std::size_t at = 0, length; at < text.size(); at += std::max<std::size_t>(length, 1)) {
+    length = character_length(text.substr(at));
     const std::string_view character = text.substr(at, length);
+    const auto code = hidden_code(character);
     if (length == 0) {
       out += "\uFFFD";
-    } else if (is_control(character) && character != "\n" && character != "\t") {
-      out += fmt::format("\\u{:04x}", unsigned{static_cast<unsigned char>(character.back())});
+    } else if (code && character != "\n" && character != "\t") {
+      out += escaped(*code);
     } else {
       out += character;
     }
-    at += length > 0 ? length : 1;
   }
   return out;
 }

@@ -27,6 +27,16 @@ TEST_CASE("printable: what comes through is UTF-8", "[encoding]") {
   for (const char* text : {"\u0800", "\ud7ff", "\ue000", "\U00010000", "\U0010ffff"}) CHECK(printable(text) == text);
 }
 
+// They reordered or hid parts of messages: a quoted point with an invisible mark looked right.
+TEST_CASE("printable: characters that reorder text or have no width are escaped", "[encoding]") {
+  CHECK(printable("\uFEFF1 2 3") == "\\ufeff1 2 3");
+  CHECK(printable("a\u202Eb\u2066c\u200Fd\u061Ce") == "a\\u202eb\\u2066c\\u200fd\\u061ce");
+  CHECK(escape_controls("\u2028\u200B\u2060") == "\\u2028\\u200b\\u2060");
+  CHECK(printable_length("\u202E") == 0);
+  CHECK(printable_length("\u202F") == 3);
+  CHECK(printable("\u200C\u200D") == "\u200C\u200D");  // letters of some scripts are joined by them
+}
+
 TEST_CASE("printable: data keep their controls as JSON writes them", "[encoding]") {
   CHECK(escape_controls("a\tb\n\u009b31m \x1b\x7f \u00e9") == "a\tb\n\\u009b31m \\u001b\\u007f \u00e9");
   CHECK(escape_controls("\xff\xc0\x80") == "\uFFFD\uFFFD\uFFFD");
