@@ -54,29 +54,27 @@ class Formatter {
       }
       if (tokens_.tokens[i].kind != Token::Kind::End) add(&tokens_.tokens[i], tokens_.tokens[i].span);
     }
+    leaders_.resize(items_.size());
+    const Item* leader = nullptr;
+    for (std::size_t i = items_.size(); i-- > 0; leaders_[i] = leader) {
+      if (items_[i].token) leader = &items_[i];
+    }
   }
 
   void add(const Token* token, Span span) {
     const std::size_t from = items_.empty() ? 0 : items_.back().span.end;
     const std::string_view between = text_.substr(from, span.begin - from);
     const auto lines = static_cast<std::size_t>(std::ranges::count(between, '\n'));
-    const std::size_t start = span.begin == 0 ? std::string_view::npos : text_.rfind('\n', span.begin - 1);
-    const std::size_t column = span.begin - (start == std::string_view::npos ? 0 : start + 1);
-    items_.push_back({token, span, text_.substr(span.begin, span.end - span.begin), lines,
-                      static_cast<std::uint32_t>(column)});
-  }
-
-  // Returns the item that decides the indentation of a line: its first token, or for a comment the first token after
-  // the comment.
-  const Item* leader(std::size_t i) const {
-    while (i < items_.size() && !items_[i].token) ++i;
-    return i < items_.size() ? &items_[i] : nullptr;
+    if (lines > 0) line_start_ = from + between.rfind('\n') + 1;
+    const std::string_view text = text_.substr(span.begin, span.end - span.begin);
+    items_.push_back({token, span, text, lines, static_cast<std::uint32_t>(span.begin - line_start_)});
+    if (const std::size_t last = text.rfind('\n'); last != text.npos) line_start_ = span.begin + last + 1;
   }
 
   void begin_line(std::size_t i) {
     if (!out_.empty()) out_ += items_[i].lines > 1 ? "\n\n" : "\n";
-    const Item* by = leader(i);
-    if (by == nullptr || by->token == nullptr) return;
+    const Item* by = leaders_[i];
+    if (by == nullptr) return;
     // A comment before a token on the same line determines the indentation of that line.
     const std::uint32_t column = by == &items_[i] || by->lines > 0 || i == 0 ? by->column : items_[i].column;
     const bool starts = levels_.empty() || (!by->closes() && column <= levels_.front());
@@ -128,6 +126,10 @@ class Formatter {
   std::string_view text_;
   Tokens tokens_;
   std::vector<Item> items_;
+  std::size_t line_start_ = 0;
+  // [item] the item that decides the indentation of a line: its first token, or for a comment the first token after the
+  // comment; null if there is none.
+  std::vector<const Item*> leaders_;
   std::vector<std::uint32_t> levels_;  // columns in the source; the first is the statement's
   const Token* begins_statement_ = nullptr;
   const Token *last_ = nullptr, *before_last_ = nullptr;
