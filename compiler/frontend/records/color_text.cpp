@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
+#include "compiler/frontend/records/css_colors.h"
 #include "compiler/scene/srgb.h"
 
 namespace fathom::compiler {
@@ -20,15 +22,28 @@ constexpr double kMinByte = 16;
 // Returns the value of a hexadecimal digit of either case, or npos for other characters.
 std::size_t hex_digit(char c) { return kHexDigits.find(c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c); }
 
+const NamedColor* find_css(std::string_view name) {
+  const auto* const found = std::ranges::lower_bound(kCssColors, name, {}, &NamedColor::name);
+  return found != std::end(kCssColors) && found->name == name ? found : nullptr;
+}
+
+bool is_parameter(std::string_view name, const Scope& scope) {
+  return std::ranges::any_of(scope.entries(), [&](const auto& entry) { return entry.parameter.name == name; });
+}
+
 }  // namespace
 
-bool is_color_text(const syntax::Value& value, ValueType type) {
+bool is_color_text(const syntax::Value& value, ValueType type, const Scope& scope) {
   const auto* text = std::get_if<std::string>(&value.data);
-  return text != nullptr && text->starts_with('#') && (type == ValueType::Color || type == ValueType::Background);
+  if (text == nullptr || (type != ValueType::Color && type != ValueType::Background)) return false;
+  const bool is_formula = type == ValueType::Color && is_parameter(*text, scope);
+  return text->starts_with('#') || (find_css(*text) && !is_formula);
 }
 
 std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics) {
-  const std::string_view digits = std::string_view(std::get<std::string>(value.data)).substr(1);
+  const NamedColor* const named = find_css(std::get<std::string>(value.data));
+  const std::string code = named ? fmt::format("#{:06x}", named->code) : std::get<std::string>(value.data);
+  const std::string_view digits = std::string_view(code).substr(1);
   const bool all_hex =
       std::all_of(digits.begin(), digits.end(), [](char c) { return hex_digit(c) != kHexDigits.npos; });
   if (!all_hex || (digits.size() != 3 && digits.size() != 6)) {

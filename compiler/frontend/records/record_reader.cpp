@@ -270,9 +270,10 @@ void RecordReader::check(const syntax::Property& property) {
     const std::string elsewhere = owner(spec_, property.name, diagnostics_);
     if (!elsewhere.empty()) help.insert(help.begin(), elsewhere);
     diagnostics_.error("E0102", property.name_span,
-                       fmt::format("unknown property `{}` in {}", property.name, spec_.title),
+                       property.name.empty() ? fmt::format("a property without a name in {}", spec_.title)
+                                             : fmt::format("unknown property `{}` in {}", property.name, spec_.title),
                        fmt::format("not a {} property", spec_.noun), std::move(help));
-  } else if (is_color_text(*property.value, row->type)) {
+  } else if (is_color_text(*property.value, row->type, scope_)) {
     check_color_text(*property.value, *row);
   } else if (row->varies && varies(*property.value)) {
     fit_.push_back({own_name(*row), property.value.get()});

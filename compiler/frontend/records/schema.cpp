@@ -56,7 +56,10 @@ OrderedJson record_schema(const RecordSpec& record, bool type_required);
 // True if the property distinguishes the records of a family.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
-OrderedJson color_text_schema() { return {{"type", "string"}, {"pattern", "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"}}; }
+// Returns the schema of a code or a name.
+OrderedJson color_text_schema() {
+  return {{"type", "string"}, {"pattern", "^(#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})|[^#].*)$"}};
+}
 
 // Returns the schema of a grey or a colour. A colour string matches the string schema for formulas.
 OrderedJson color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
@@ -99,8 +102,9 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
     case ValueType::Scale:
     case ValueType::Rotation:
       return reference(property.name);
-    case ValueType::Background:  // one colour for both ends
-      return {{"anyOf", {three_schema(*background_records()[0].find("top")), color_text_schema(), reference(property.name)}}};
+    case ValueType::Background:  // one colour for both ends, as numbers or a string
+      return {{"anyOf",
+               {three_schema(*background_records()[0].find("top")), color_text_schema(), reference(property.name)}}};
     case ValueType::Version:
       return {{"const", kSceneVersion}};
     case ValueType::Anything:

@@ -189,7 +189,9 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
         continue;
       }
       const Position at = source_.locate(first->name_span.begin);
-      diagnostics_.error("E0010", property->name_span, fmt::format("`{}` is given twice", property->name),
+      diagnostics_.error("E0010", property->name_span,
+                         property->name.empty() ? "a property without a name is given twice"
+                                                : fmt::format("`{}` is given twice", property->name),
                          "the second of the same name",
                          {fmt::format("the first is at line {}, column {}; keep one of them", at.line, at.column)});
       dropped.push_back(property->name_span.begin);

@@ -35,6 +35,19 @@ TEST_CASE("a colour as a screen shows it is decoded by the sRGB curve", "[fronte
   CHECK(color.b == Approx(0.05126945837404324).epsilon(1e-12));
 }
 
+TEST_CASE("a colour can be named as in CSS", "[frontend][elaborate]") {
+  CHECK(color_of(R"("tomato")") == color_of(R"("#ff6347")"));
+  CHECK(color_of(R"("tan")") == color_of(R"("#d2b48c")"));  // also a function, which no formula is
+  CHECK(color_of(R"("aliceblue")") == color_of(R"("#f0f8ff")"));
+  CHECK(color_of(R"("yellowgreen")") == color_of(R"("#9acd32")"));
+  // A parameter of that name is meant, as before there were names.
+  const compiler::CompiledScene scene = test::compiled(
+      R"({"version": 1, "params": {"red": 0.25}, "background": "red", "materials": {"m": {"type": "diffuse",
+      "color": "red"}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
+  CHECK(scene.background.top == glm::dvec3(1, 0, 0));  // no formula
+  CHECK(scene.materials.at(0).color == glm::dvec3(0.25));
+}
+
 TEST_CASE("an outline is moved by two numbers as by three of which the last is 0", "[frontend][elaborate]") {
   CHECK(extruded(R"([1, "2 + 1"])") == extruded("[1, 3, 0]"));
 }
