@@ -13,6 +13,7 @@
 #include "compiler/frontend/syntax/json_error.h"
 #include "compiler/frontend/text/parse/lexer.h"
 #include "compiler/frontend/text/parse/parser.h"
+#include "compiler/frontend/text/parse/standard_library.h"
 
 namespace fathom::compiler::text {
 namespace {
@@ -24,6 +25,19 @@ constexpr const char* kAsText = " (as text)";  // suffix of the name of a conver
 // Returns the location of an imported path, relative to the scene's folder.
 std::string joined(const std::string& from, const std::string& path) {
   return (fs::path(from).parent_path() / path).lexically_normal().generic_string();
+}
+
+// Returns the location of an imported path, relative to the scene's folder. `from` is the location of the importer.
+std::string path_of(const std::string& path, const std::string& from) {
+  if (!is_standard(path)) return joined(from, path);
+  const StandardFile* const file = find_standard(path);
+  return file ? fmt::format("std/{}.fathom", file->name) : path;
+}
+
+std::string names_of_standard_files() {
+  std::vector<std::string> names;
+  for (const StandardFile& file : standard_files()) names.push_back(fmt::format("std/{}", file.name));
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 // Returns the reason why a path is invalid, or "" if the path is valid.
@@ -68,7 +82,7 @@ class ImportLoader {
     if (const std::string fault = fault_of(statement.label); !fault.empty()) {
       return fail(span, fault, {"write it from the folder of this file, with / between names: \"lib/gears.fathom\""});
     }
-    const std::string path = joined(paths_[module], statement.label);
+    const std::string path = path_of(statement.label, paths_[module]);
     if (const auto circle = circle_of(paths_[module], path); !circle.empty()) {
       return fail(span, fmt::format("`{}` imports itself: {}", circle.front(), fmt::join(circle, " imports ")),
                   {"move what both need to a file of its own"});
@@ -133,6 +147,11 @@ class ImportLoader {
 
   const Source* read(const std::string& path, Span span) {
     if (const Source* known = known_file(path, false)) return known;
+    if (const StandardFile* file = find_standard(path)) return add_source(path, std::string(file->text), false, span);
+    if (is_standard(path)) {
+      fail(span, fmt::format("the library has no `{}`", path), {"there are " + names_of_standard_files()});
+      return nullptr;
+    }
     auto text = reader_ ? reader_(path) : ImportFault{"there are no files here", ""};
     if (const auto* fault = std::get_if<ImportFault>(&text)) {
       std::vector<std::string> help;
@@ -151,7 +170,8 @@ class ImportLoader {
                          {raise(&Limits::file_size, size)});
       return nullptr;
     }
-    const std::string name = (fs::path(source_.name()).parent_path() / path).lexically_normal().string();
+    const fs::path folder = is_standard(path) ? fs::path() : fs::path(source_.name()).parent_path();
+    const std::string name = (folder / path).lexically_normal().string();
     const Source& file =
         source_.import(derived ? path + kAsText : path, derived ? name + kAsText : name, std::move(text), derived);
     Diagnostics faults;

@@ -69,6 +69,17 @@ TEST_CASE("imports: names of files stand for what they are there", "[frontend][t
         R"({"version":1,"params":{"s":2},"objects":[{"type":"box","half_size":[6,6,6]}]})");
 }
 
+TEST_CASE("imports: the library is there without a file", "[frontend][text]") {
+  const std::string screw = "object screws.nut(1)";
+  const std::string from_library = json_of("import \"std/screws\" as screws\n" + screw, {});
+  CHECK(from_library.find("objects") != std::string::npos);
+  CHECK(json_of("import \"std/screws.fathom\" as screws\n" + screw, {}) == from_library);
+  // From a file in a folder, and by two names: one file.
+  const Files files = {{"parts/a.fathom", "fathom 1\nimport \"std/screws\" as screws\nlet nut = screws.nut(1)\n"}};
+  CHECK(json_of("import \"parts/a.fathom\" as a\nobject a.nut", files) == from_library);
+  CHECK(json_of("import \"std/sprockets\" as s\nobject s.x", {}) == "E0810");
+}
+
 TEST_CASE("imports: a local name hides a file's", "[frontend][text]") {
   CHECK(json_of("import \"lib/a.fathom\" as a\nlet b = a.red\nobject [for a in [[1, 2, 3]]: sphere(a.x)].material(b)",
                 kFiles) ==
