@@ -314,6 +314,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   std::optional<CompiledField> whole =
       compile_field(elaborated->scene, field, known, tagged, source, diagnostics, options);
   if (!whole) return std::nullopt;
+  leave_solids(elaborated->camera, whole->distance);
   std::optional<std::vector<Medium>> media = compile_media(*elaborated, tagged, source, diagnostics, options);
   if (!media) return std::nullopt;
   std::optional<std::vector<vm::VerifiedProgram>> formulas =

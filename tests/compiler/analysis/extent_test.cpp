@@ -55,4 +55,17 @@ TEST_CASE("extent: a pit is what there is to see of a ground; what only has no e
   CHECK(extent_of(R"({"type": "gyroid", "period": 1})").empty());
 }
 
+// The camera of a scene without an end stood within a copy: the picture was black or grey.
+TEST_CASE("extent: an automatic camera stands outside of parts without an end", "[analysis][extent]") {
+  for (const char* object : {R"({"type": "repetition", "period": [1, 1, 1], "of": {"type": "sphere", "radius": 0.3}})",
+                             R"({"type": "repetition", "period": [1, 0, 1], "of": {"type": "box", "half_size": [0.4, 2, 0.4]}})",
+                             R"({"type": "gyroid", "period": 1})", R"({"type": "gyroid", "period": 40})",
+                             R"({"type": "plane", "normal": [0, 0, 1], "offset": 30})"}) {
+    CAPTURE(object);
+    const compiler::CompiledScene scene = compiled_objects(object);
+    vm::Workspace workspace;
+    CHECK(vm::evaluate_distance(scene.distance, scene.camera.position, workspace) > 0);
+  }
+}
+
 }  // namespace fathom::extent_test

@@ -88,13 +88,15 @@ TEST_CASE("cli: render warns of a picture that is of one color throughout, and s
              Contains("the picture is white throughout: its brightest light is") && Contains("try --exposure -1"));
   CHECK_THAT(said(folder, ball(close, sky("0.5, 0.5, 0.5")), "-s 4"),
              Contains("the picture is one color throughout, #"));
-  // A camera inside a solid, placed by the scene or by default.
+  // A camera inside a solid.
   const std::string within = R"("position": [0, 0, 0.5], "target": [0, 0, 0])";
   CHECK_THAT(said(folder, ball(within, sky("0.5, 0.5, 0.5"))),
              Contains("the picture is black throughout: the camera is inside `") && Contains("--position"));
   const std::string ground = R"({"version": 1, "lights": {"lamp": {"type": "point", "position": [0, 9, 0]}},
     "objects": [{"name": "ground", "type": "plane", "normal": [0, 1, 0], "offset": 6}]})";
-  CHECK_THAT(said(folder, ground, "-r 16 -s 1"), Contains("the camera is inside `ground`"));
+  CHECK_THAT(said(folder, ground, "-r 16 -s 1"), !Contains("inside"));  // placed by default
+  CHECK_THAT(said(folder, ground, "-r 16 -s 1 --position 0,0,5 --look-at 0,0,0"),
+             Contains("the camera is inside `ground`"));
   CHECK_THAT(said(folder, ground, "-r 16 -s 1 --position 0,8,9 --look-at 0,6,0"), !Contains("inside"));
   // Light from behind the ball does not reach the visible side.
   const std::string sun = R"("lights": {"sun": {"type": "directional", "direction": [0, 0, 1]}}, )";
