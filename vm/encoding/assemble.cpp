@@ -160,7 +160,7 @@ class Assembler {
     const std::size_t expected = row.form == Form::Outline ? own * draft.operand : own;
     if (given != expected) {
       return fail(tokens_[0],
-                  fmt::format("`{}` takes {} numbers{}{}, not {}", row.mnemonic, expected,
+                  fmt::format("`{}` takes {} number{}{}{}, not {}", row.mnemonic, expected, expected == 1 ? "" : "s",
                               own == 0 ? "" : fmt::format(" ({})", names(row)),
                               row.form == Form::Outline ? " after the first, which says how often" : "", given));
     }

@@ -46,7 +46,10 @@ std::optional<std::string> check_immediates(const Program& program, std::size_t 
 
 std::optional<std::string> check_local(const OpcodeInfo& row, std::uint32_t local, State& state) {
   if (local >= state.written.size()) {
-    return fmt::format("{} {}: the program declares {} locals", row.mnemonic, local, state.written.size());
+    return state.written.empty()
+               ? fmt::format("{} {}: the program declares 0 locals: `locals {}` is missing before its instructions",
+                             row.mnemonic, local, local + 1)
+               : fmt::format("{} {}: the program declares {} locals", row.mnemonic, local, state.written.size());
   }
   if (row.opcode == Opcode::Tee) state.written[local] = true;
   if (!state.written[local]) {

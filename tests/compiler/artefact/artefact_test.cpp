@@ -300,7 +300,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
              Contains("program `sorface` is out of order; `surface` should come here"));
   CHECK_THAT(refused("program formula 0 {", "  program"), Contains("neither a program nor the text"));
   CHECK_THAT(refused("\n}\nprogram surface", "\nprogram surface"), Contains("error"));
-  CHECK_THAT(refused("sphere 0.5", "sphere 0.5 7"), Contains("`sphere` takes 1 numbers (radius), not 2"));
+  CHECK_THAT(refused("sphere 0.5", "sphere 0.5 7"), Contains("`sphere` takes 1 number (radius), not 2"));
   CHECK_THAT(refused("tag 0", "tag 99"), Contains("tag 99: the scene has 4 surfaces"));
   CHECK_THAT(refused("|{", "{"), Contains("begins with |"));
   CHECK_THAT(refused("\"ball\"", "\"ba\\nll\""), Contains("a control character"));

@@ -72,7 +72,7 @@ TEST_CASE("a program may be written without any of the listing's columns", "[enc
 
 TEST_CASE("what is no program is refused where it goes wrong", "[encoding][assemble]") {
   refused("spher 1\n", "spher", "no instruction is called `spher`");
-  refused("sphere\n", "sphere", "`sphere` takes 1 numbers (radius), not 0");
+  refused("sphere\n", "sphere", "`sphere` takes 1 number (radius), not 0");
   refused("sphere 1 2\n", "sphere", "not 2");
   refused("sphere one\n", "one", "`one` is not a number");
   refused("sphere inf\n", "inf", "not a number");
