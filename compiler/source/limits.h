@@ -24,6 +24,7 @@ struct Limits {
   double formula_nesting = 1000;
   double steps = 1e7;
   double nodes = 1e6;
+  double made_nodes = 120000;
   double copies = 512;
   double iterations = 256;
   double instructions = 1e6;
@@ -34,7 +35,7 @@ struct Limits {
   double image_side = 65535;
   double pixels = 1 << 28;
   double samples = 1 << 20;
-  double memory = 0;  // 0: three quarters of the machine's memory
+  double memory = 0;  // 0: three quarters of the memory that the process may use
 };
 
 struct LimitRow {
@@ -52,7 +53,7 @@ inline constexpr double kAnySize = 1e15;
 // per node, and 1,700 where regions are built.
 inline constexpr double kBytesPerNode = 1800;
 
-inline constexpr std::array<LimitRow, 17> kLimits = {{
+inline constexpr std::array<LimitRow, 18> kLimits = {{
     {"file-size", &Limits::file_size, 1 << 30, "bytes", "a scene, a listing, a list of points",
      "places in a text have 32 bits"},
     {"tokens", &Limits::tokens, 1 << 30, "values and names", "a scene's text", "places in a text have 32 bits"},
@@ -64,6 +65,8 @@ inline constexpr std::array<LimitRow, 17> kLimits = {{
     {"nodes", &Limits::nodes, 1e9, "nodes",
      "the graph before it is optimised, each node in every object that paints it anew",
      "nodes are numbered in 32 bits"},
+    {"made-nodes", &Limits::made_nodes, 1e9, "nodes",
+     "what a text's functions and loops make, or one for each word of the text", "nodes are numbered in 32 bits"},
     {"copies", &Limits::copies, 512, "copies", "evaluations of its node for each point, of each repetition",
      "the program of one node"},
     {"iterations", &Limits::iterations, 256, "iterations", "a fractal's loop, and its power",

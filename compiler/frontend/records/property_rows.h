@@ -11,8 +11,8 @@
 namespace fathom::compiler::rows {
 
 inline constexpr Range kUnit{0, 1};
-// Largest whole number up to which double is exact. JSON numbers are read as doubles.
-inline constexpr double kLargestWhole = 9007199254740992;  // 2^53
+// Largest whole number that no other is rounded to. JSON numbers are read as doubles.
+inline constexpr double kLargestWhole = 9007199254740991;  // 2^53 - 1
 
 inline PropertySpec number(std::string_view name, std::string_view doc, std::vector<double> fallback,
                            Range range = {}, Rule rule = Rule::Any) {

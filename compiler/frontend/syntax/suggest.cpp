@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "compiler/source/diagnostics.h"
 
@@ -260,7 +261,57 @@ constexpr Synonym kSynonyms[] = {
     {"arctan2", "atan2"},
 };
 
+struct ForeignTerm {
+  std::string_view term, help;
+};
+
+constexpr std::string_view kVector = "a vector is a list: [1, 2, 3]",
+                           kRepeat = "copies on a grid are body.repetition(period = [2, 0, 0], count = [5, 1, 1]), in a "
+                                     "turn body.polar_repetition(8)",
+                           kSmoothUnion = "a smooth union is a +{0.1} b, a smooth cut a -{0.1} b",
+                           kFillet = "an edge where bodies meet is rounded by a +{round = 0.1} b or a -{round = 0.1} b, "
+                                     "all edges by body.round(0.1)",
+                           kFog = "there is no air that scatters light; a body's inside tints it: transparent(absorption = 0.5)",
+                           kThread = "the library has bolts and nuts: import \"std/screws\" as screws";
+
+// The terms are those of GLSL, OpenSCAD, curv and libraries of distance functions.
+constexpr ForeignTerm kForeignTerms[] = {
+    {"vec2", "a vector is a list: [1, 2]"},
+    {"vec3", kVector},
+    {"vec4", kVector},
+    {"float2", "a vector is a list: [1, 2]"},
+    {"float3", kVector},
+    {"vector", kVector},
+    {"repeat", kRepeat},
+    {"domain_repeat", kRepeat},
+    {"array", kRepeat},
+    {"repeat_xy", kRepeat},
+    {"repeat_radial", kRepeat},
+    {"smin", kSmoothUnion},
+    {"smax", "a smooth intersection is a &{0.1} b"},
+    {"smooth_min", kSmoothUnion},
+    {"blend", kSmoothUnion},
+    {"fillet", kFillet},
+    {"chamfer", "a chamfer where bodies meet is a +{chamfer = 0.1} b or a -{chamfer = 0.1} b"},
+    {"text", "there are no letters: an outline of points is polygon([[0, 0], [1, 0], [0, 1]])"},
+    {"thread", kThread},
+    {"screw", kThread},
+    {"bolt", kThread},
+    {"minkowski", "the Minkowski sum with a ball is body.round(0.1); there is no other"},
+    {"hull", "there is no hull: of two balls it is round_cone or capsule, of points an extruded polygon"},
+    {"loft", "there is no loft: a body that narrows is body.taper(...)"},
+    {"fog", kFog},
+    {"mist", kFog},
+    {"volume", kFog},
+    {"at", "a body is moved by body.translate([1, 2, 3])"},
+};
+
 }  // namespace
+
+std::string_view foreign_help(std::string_view word) {
+  const auto* const found = std::ranges::find(kForeignTerms, word, &ForeignTerm::term);
+  return found == std::end(kForeignTerms) ? "" : found->help;
+}
 
 std::string_view suggest(std::string_view word, const std::vector<std::string_view>& known) {
   for (const Synonym& synonym : kSynonyms) {

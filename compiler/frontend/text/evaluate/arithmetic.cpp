@@ -75,9 +75,12 @@ Value Evaluator::operate(char mark, const Value& a, const Value& b, Span span) {
     return value;
   }
   if (a.is(Type::List) || b.is(Type::List)) return elementwise(mark, a, b, span);
-  const bool texts = a.is(Type::Text) || b.is(Type::Text);
+  const bool texts = a.is(Type::Text) || b.is(Type::Text), nodes = a.is(Type::Node) || b.is(Type::Node);
   fail("E0807", span, fmt::format("`{}` of {} and {}", mark, describe(a), describe(b)),
-       {texts ? "texts are not computed with" : "it takes numbers, vectors or nodes"});
+       {texts                  ? "texts are not computed with"
+        : nodes && mark == '*' ? "a body is made larger by body.scale(2); an intersection is written a & b"
+        : nodes                ? "bodies take +, - and &; body.round(0.1) makes one thicker"
+                               : "it takes numbers, vectors or nodes"});
 }
 
 Value Evaluator::formula_of_pair(char mark, const Value& a, const Value& b, Span span) {

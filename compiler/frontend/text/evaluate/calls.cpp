@@ -120,6 +120,16 @@ Value Evaluator::call_definition(const Expr& expr, const Statement& definition) 
   return result;
 }
 
+// Returns how the operation is written that a function of two distances makes of bodies in a shader, or "".
+std::string of_bodies(std::string_view function) {
+  if (function == "min") return "a union is written a + b";
+  if (function == "max") return "an intersection is written a & b, a cut a - b";
+  if (function == "mix") return "what lies between two bodies is morph(a, b, t = 0.5), a soft join a +{0.2} b";
+  if (function == "mod") return "copies on a grid are body.repetition(period = [2, 0, 0])";
+  if (function == "abs") return "a shell is body.onion(0.05), a mirrored body body.mirror([1, 0, 0])";
+  return "";
+}
+
 // Calls a formula function. `length` also accepts a vector.
 Value Evaluator::call_formula(const Expr& expr, Values arguments) {
   const FormulaFunction& function = *expr.word->formula;
@@ -133,7 +143,9 @@ Value Evaluator::call_formula(const Expr& expr, Values arguments) {
   }
   for (const Value& argument : arguments) {
     if (!is_number(argument)) {
-      fail("E0807", argument.span, fmt::format("`{}` takes numbers, not {}", expr.name, describe(argument)), {});
+      const std::string help = argument.is(Type::Node) ? of_bodies(expr.name) : "";
+      fail("E0807", argument.span, fmt::format("`{}` takes numbers, not {}", expr.name, describe(argument)),
+           help.empty() ? std::vector<std::string>{} : std::vector{help});
     }
   }
   const Value& last = arguments.back();
@@ -189,9 +201,11 @@ Value Evaluator::call_builtin(const Expr& expr, Values arguments) {
   };
   if (which == Builtin::Dot) return sum_of_products(a, list_of(arguments[1], what.c_str()));
   const Value square = sum_of_products(a, a);
-  const double length = std::sqrt(constant(square, "a vector's length"));
+  const double length = std::sqrt(square.is(Type::Number) ? square.number : constant(square, "a vector's length"));
   if (!(length > 0)) fail("E0807", expr.span, "a vector of length 0 has no direction");
-  return operate('/', arguments[0], number(length, expr.span), expr.span);
+  Value divisor = number(length, expr.span);
+  if (square.spelling && square.spelling->is_parametric) spell_call(divisor, "sqrt", Values(&square, 1));
+  return operate('/', arguments[0], divisor, expr.span);
 }
 
 // Returns a random number in [0, 1) that depends only on the arguments, which are whole numbers: the same on every

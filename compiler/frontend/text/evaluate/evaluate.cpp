@@ -15,6 +15,12 @@ namespace {
 // Number of steps per list element that no expression creates. Such an element also takes memory.
 constexpr double kStepsPerElement = 3;
 
+double count_tokens(const Tree& tree) {
+  double tokens = 0;
+  for (const Module& module : tree.modules) tokens += static_cast<double>(module.tokens);
+  return tokens;
+}
+
 }  // namespace
 
 Evaluator::Evaluator(const Tree& tree, const Definitions& definitions, const Limits& limits, bool keep_formulas,
@@ -22,6 +28,7 @@ Evaluator::Evaluator(const Tree& tree, const Definitions& definitions, const Lim
     : tree_(tree),
       definitions_(definitions),
       limits_(limits),
+      made_nodes_(std::max(limits.made_nodes, count_tokens(tree))),
       keep_formulas_(keep_formulas),
       diagnostics_(diagnostics) {}
 

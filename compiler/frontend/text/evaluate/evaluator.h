@@ -99,6 +99,8 @@ class Evaluator {
   void keep_lines(Value& value, Values bindings);
   void freeze(const Value& value, Span span);
   const Spelling* spelling_of(const Value& value);
+  void spell(Value& value, Spelling made);
+  void note_frozen(Span span);
 
   // values.cpp
   Span here(Span span) const { return {span.begin, span.end, trace_}; }
@@ -122,6 +124,7 @@ class Evaluator {
   const Tree& tree_;
   const Definitions& definitions_;
   const Limits& limits_;
+  const double made_nodes_;  // a text of many words is known to be large
   const bool keep_formulas_;
   Diagnostics& diagnostics_;
   Evaluated out_;

@@ -12,6 +12,8 @@ namespace {
 constexpr int kSumLevel = 1, kProductLevel = 2, kSignLevel = 3, kPowerLevel = 4, kAtomLevel = 5;
 // Maximum length in characters. Longer spellings come from loops, and the plain number is as informative.
 constexpr std::size_t kLongestSpelling = 4000;
+// Maximum length in characters of all spellings of a scene: two thousand folds of 300 steps took 4 GB.
+constexpr std::size_t kMostSpelled = 64 << 20;
 
 int level_of(char mark) {
   return mark == '+' || mark == '-' ? kSumLevel : mark == '*' || mark == '/' ? kProductLevel : kPowerLevel;
@@ -31,7 +33,7 @@ void merge(Spelling& into, const Spelling& from) {
   std::ranges::sort(into.lines, {}, &Spelling::Line::number);
 }
 
-// True if two lines of the same name come from different places. A formula can keep neither.
+// True if two lines of the same name come from different places.
 bool is_ambiguous(const Spelling& spelling) {
   for (std::size_t i = 0; i < spelling.lines.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -39,6 +41,13 @@ bool is_ambiguous(const Spelling& spelling) {
     }
   }
   return false;
+}
+
+// Writes the lines of an ambiguous spelling out where they are used.
+void without_ambiguity(Spelling& spelling) {
+  if (!is_ambiguous(spelling)) return;
+  spelling.text = spelling.inlined;
+  spelling.lines.clear();
 }
 
 }  // namespace
@@ -52,12 +61,20 @@ const Spelling* Evaluator::spelling_of(const Value& value) {
   return &out_.store.spellings.emplace_back(std::move(made));
 }
 
+// Gives the value a spelling, unless those of the scene take too much memory by now.
+void Evaluator::spell(Value& value, Spelling made) {
+  out_.store.spelled += made.text.size() + made.inlined.size();
+  const bool room = out_.store.spelled <= kMostSpelled;
+  if (!room && made.is_parametric) note_frozen(value.span);
+  value.spelling = room ? &out_.store.spellings.emplace_back(std::move(made)) : nullptr;
+}
+
 void Evaluator::spell_name(Value& value, std::string_view name, bool parametric) {
   if (!keep_formulas_) return;
   Spelling made;
   made.text = made.inlined = name;
   made.precedence = kAtomLevel, made.is_parametric = parametric;
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  spell(value, std::move(made));
 }
 
 void Evaluator::spell_number(Value& value, std::string_view text) {
@@ -65,7 +82,7 @@ void Evaluator::spell_number(Value& value, std::string_view text) {
   Spelling made;
   made.text = made.inlined = text;
   made.precedence = kAtomLevel, made.is_literal = true;
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  spell(value, std::move(made));
 }
 
 void Evaluator::spell_sign(Value& value, const Value& of) {
@@ -75,7 +92,7 @@ void Evaluator::spell_sign(Value& value, const Value& of) {
   made.inlined = "-" + operand(of.spelling->inlined, of.spelling->precedence, kSignLevel);
   made.precedence = kSignLevel, made.is_literal = of.spelling->is_literal;
   merge(made, *of.spelling);
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  spell(value, std::move(made));
 }
 
 void Evaluator::spell_pair(Value& value, char mark, const Value& a, const Value& b) {
@@ -96,11 +113,12 @@ void Evaluator::spell_pair(Value& value, char mark, const Value& a, const Value&
                  operand(right->inlined, right->precedence, right_level);
   made.precedence = level;
   for (const Spelling* part : {left, right}) merge(made, *part);
-  if (made.inlined.size() > kLongestSpelling || is_ambiguous(made)) {
+  if (made.inlined.size() > kLongestSpelling) {
     for (const Value& one : operands) freeze(one, value.span);
     return;
   }
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  without_ambiguity(made);
+  spell(value, std::move(made));
 }
 
 void Evaluator::spell_call(Value& value, std::string_view function, Values arguments) {
@@ -119,11 +137,12 @@ void Evaluator::spell_call(Value& value, std::string_view function, Values argum
   made.text += ")", made.inlined += ")";
   made.precedence = kAtomLevel;
   if (plain && value.is(Type::Number) && !made.is_parametric) return;
-  if (made.inlined.size() > kLongestSpelling || is_ambiguous(made)) {
+  if (made.inlined.size() > kLongestSpelling) {
     for (const Value& one : arguments) freeze(one, value.span);
     return;
   }
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  without_ambiguity(made);
+  spell(value, std::move(made));
 }
 
 void Evaluator::spell_group(Value& value) {
@@ -131,7 +150,7 @@ void Evaluator::spell_group(Value& value) {
   Spelling made = *value.spelling;
   made.text = "(" + made.text + ")", made.inlined = "(" + made.inlined + ")";
   made.precedence = kAtomLevel, made.is_literal = false;
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  spell(value, std::move(made));
 }
 
 // Turns `let name = value in ...` into a line of its own in a JSON scene's formula.
@@ -142,7 +161,7 @@ void Evaluator::spell_line(Value& value, std::string_view name) {
   made.text = name;
   if (made.precedence < kAtomLevel) made.inlined = "(" + made.inlined + ")";
   made.precedence = kAtomLevel;
-  value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  spell(value, std::move(made));
 }
 
 // Keeps the lines of a formula's `let` even if the formula does not use them.
@@ -152,11 +171,16 @@ void Evaluator::keep_lines(Value& value, Values bindings) {
   for (const Value& binding : bindings) {
     if (binding.spelling) merge(made, *binding.spelling);
   }
-  if (!is_ambiguous(made)) value.spelling = &out_.store.spellings.emplace_back(std::move(made));
+  if (!is_ambiguous(made)) spell(value, std::move(made));
+}
+
+void Evaluator::note_frozen(Span span) {
+  const bool again = !out_.frozen.empty() && out_.frozen.back().begin == span.begin;
+  if (!again) out_.frozen.push_back(span);
 }
 
 void Evaluator::freeze(const Value& value, Span span) {
-  if (value.spelling && value.spelling->is_parametric) out_.frozen.push_back(span);
+  if (value.spelling && value.spelling->is_parametric) note_frozen(span);
 }
 
 }  // namespace fathom::compiler::text

@@ -105,6 +105,7 @@ struct Store {
   std::deque<Record> records;
   std::deque<Node> nodes;
   std::deque<Spelling> spellings;
+  std::size_t spelled = 0;  // length of all of them in characters
   std::deque<Spelling::Line> lines;
   FormulaBuilder formulas;
 };

@@ -99,6 +99,10 @@ Value Evaluator::node(Node from) {
     fail("E0312", from.span, fmt::format("the scene has more than {} nodes here", limits_.nodes),
          {raise(&Limits::nodes, 2 * limits_.nodes)});
   }
+  if (static_cast<double>(out_.store.nodes.size()) >= made_nodes_) {
+    fail("E0312", from.span, fmt::format("functions and loops make more than {} nodes", made_nodes_),
+         {raise(&Limits::made_nodes, 4 * made_nodes_)});
+  }
   Value made = blank(Type::Node, from.span);
   made.node = &out_.store.nodes.emplace_back(std::move(from));
   return made;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string>
 
+#include "compiler/frontend/text/parse/vocabulary.h"
+
 namespace fathom::compiler::text {
 
 struct Operator {
@@ -165,6 +167,7 @@ Expr* ExpressionParser::missing_operator(Expr* left, int least) {
       "an operator is missing before it",
       {unit      ? "units are not written: angles of a scene are in degrees, those of sin, cos and tan in radians"
        : product ? "for a product write a*b"
+       : named && find_word(left->name)             ? "a call has parentheses: sphere(1)"
        : named && token.kind == Token::Kind::Number ? "an argument by name is written name = value"
                                                     : "a statement begins on a line of its own"});
 }

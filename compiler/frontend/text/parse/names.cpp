@@ -378,6 +378,7 @@ class Resolver {
 
   // Suggests only the nearest of the 160 words.
   static std::string nearest_of(std::string_view name, const std::vector<std::string_view>& known) {
+    if (const std::string_view help = foreign_help(name); !help.empty()) return std::string(help);
     const std::string_view meant = suggest(name, known);
     return meant.empty() ? "docs/reference/gallery.md shows all nodes; a function of one's own is "
                            "`def name(a, b) = ...`"

@@ -78,6 +78,35 @@ TEST_CASE("text: the JSON scene of a text is the same scene", "[frontend][text]"
   }
 }
 
+// Two values of one name met in a formula, and normalize() took a number: both wrote the parameter's default.
+TEST_CASE("text: all arithmetic with parameters stays a formula in JSON", "[frontend][text]") {
+  const char* const texts[] = {
+      ("param t = 0.3\n"
+       "def hop(u) = let s = u - floor(u) in 4*s*(1 - s)\n"
+       "def ball(u) = let s = 1 - 0.25*hop(u) in sphere(s).scale([1/sqrt(s), s, 1/sqrt(s)])\n"
+       "object ball(t)"),
+      "param t = 0.3\nobject sphere(1).translate(normalize([t, 1, t*t]))",
+      "param t = 0.3\nlet v = [t, 2, 1]\nobject box(v/2).translate([length(v), dot(v, v), max(t, 1)^2])",
+      "param t = 0.3\nobject sphere(fold s = 1 for i in 0..4: s + sqrt(t*i)/(i + 1))",
+  };
+  for (const char* const body : texts) {
+    CAPTURE(body);
+    Source text("a.fathom", std::string("fathom 1\n") + body);
+    Diagnostics diagnostics;
+    const auto kept = read_text_with_formulas(text, {}, diagnostics);
+    REQUIRE(kept);
+    CHECK(kept->frozen.empty());
+    const std::string json = write_json(kept->file);
+    CAPTURE(json);
+    for (const char* const value : {"0.3", "0.7"}) {
+      const auto at = [&](const std::string& param, std::string from) {
+        return digest_of(Source("a", from.replace(from.find(param), param.size(), param.substr(0, param.size() - 3) + value)));
+      };
+      CHECK(at("\"t\": 0.3", json) == at("param t = 0.3", std::string("fathom 1\n") + body));
+    }
+  }
+}
+
 TEST_CASE("text: the project's scenes come back as they were, and are one scene in both notations",
           "[frontend][text]") {
   int scenes = 0;
