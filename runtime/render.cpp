@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/machine.h"
 #include "runtime/base/tiles.h"
 #include "runtime/field/region_store.h"
 #include "runtime/film/adaptive.h"
@@ -180,7 +181,7 @@ Settings resolve(const compiler::CompiledScene& scene, const RenderOptions& opti
   Settings settings{with_overrides(scene.film, options), with_overrides(scene.settings, options), options, {}, {}};
   if (options.uniform || settings.spp < kMinAdaptiveSpp) settings.noise_threshold.reset();
   settings.layers.variance |= settings.noise_threshold.has_value();
-  if (settings.threads <= 0) settings.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (settings.threads <= 0) settings.threads = usable_processors();
   settings.crop = options.crop.value_or(PixelRect{0, 0, settings.width, settings.height});
   settings.samples = options.sample_range.value_or(SampleRange{0, static_cast<std::uint32_t>(settings.spp)});
   return settings;

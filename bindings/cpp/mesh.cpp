@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <fathom/fathom.hpp>
-#include <thread>
 
 #include "bindings/cpp/guard.h"
 #include "bindings/cpp/scene_data.h"
+#include "runtime/base/machine.h"
 #include "runtime/mesh/make_mesh.h"
 #include "runtime/mesh/mesh_box.h"
 
@@ -71,7 +71,7 @@ Error make(const Scene::Data& data, const MeshOptions& options, Mesh& out) {
   runtime::MeshOptions request = runtime::mesh_options(chosen, options.tolerance, options.resolution);
   request.simplifies = options.simplify;
   request.memory = data.limits.memory;
-  request.threads = options.threads > 0 ? options.threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  request.threads = options.threads > 0 ? options.threads : runtime::usable_processors();
   const runtime::MeshResult result = runtime::make_mesh(data.scene, chosen.box, request);
   if (Error error = error_of(result)) return error;
   copy(result, data.scene, out);

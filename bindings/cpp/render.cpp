@@ -6,12 +6,12 @@
 #include <cmath>
 #include <fathom/fathom.hpp>
 #include <list>
-#include <thread>
 
 #include "bindings/cpp/guard.h"
 #include "bindings/cpp/image_data.h"
 #include "bindings/cpp/scene_data.h"
 #include "compiler/scene/framing.h"
+#include "runtime/base/machine.h"
 #include "runtime/denoise/denoise.h"
 #include "runtime/light/environment_file.h"
 #include "runtime/sampling/shutter.h"
@@ -135,8 +135,8 @@ Image render_image(const RenderOptions& options, Picture& picture) {
   auto data = std::make_shared<Image::Data>();
   using End = runtime::RenderEnd;
   data->complete = result.stats.end == End::Done || result.stats.end == End::Noise;
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
-  if (options.denoise && !runtime::denoise(result.film, std::max(1, threads), [&] { return cancel.load(); })) {
+  const int threads = options.threads > 0 ? options.threads : runtime::usable_processors();
+  if (options.denoise && !runtime::denoise(result.film, threads, [&] { return cancel.load(); })) {
     data->complete = false;
   }
   data->film = std::move(result.film);

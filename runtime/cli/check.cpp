@@ -8,10 +8,10 @@
 #include <glm/geometric.hpp>
 #include <ostream>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "runtime/base/machine.h"
 #include "runtime/cli/dump/check_report.h"
 #include "runtime/cli/frames/scene_frames.h"
 #include "runtime/cli/input/scene_file.h"
@@ -26,12 +26,12 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kCheckExamples =
-    "fathom check scene.json\n"
+    "fathom check scene.fathom\n"
     "fathom check scenes/*.json                     # the worst is the status\n"
-    "fathom check --error-format short scene.json   # a line per error\n"
-    "fathom check --error-format json scene.json    # JSON lines\n"
+    "fathom check --error-format short scene.fathom # a line per error\n"
+    "fathom check --error-format json scene.fathom  # JSON lines\n"
     "fathom check --frames 0:192 hop.fathom         # each frame of an animation\n"
-    "fathom check --probe 1000000 scene.json        # tests the Lipschitz constants";
+    "fathom check --probe 1000000 scene.fathom      # tests the Lipschitz constants";
 
 constexpr int kMaxProbes = 100'000'000;
 
@@ -68,7 +68,7 @@ ExitCode run_probe(const CheckRequest& request, const compiler::CompiledScene& s
   options.points = static_cast<std::uint64_t>(*request.probes);
   options.reach = 10 * glm::length(scene.camera.target - scene.camera.position);
   options.origin = scene.origin;
-  options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  options.threads = request.threads ? *request.threads : runtime::usable_processors();
   const std::vector<compiler::ProbeRow> rows = probe(graph, scene.surfaces, options);
   const std::vector<const compiler::ProbeRow*> culprits = compiler::culprits(graph, rows);
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
@@ -90,7 +90,7 @@ void print_report(const CheckRequest& request, const compiler::CompiledScene& sc
   if (streams.quiet) return;
   const compiler::Report report = make_report(graph, scene.surfaces);
   const bool json = static_cast<compiler::ErrorFormat>(request.scene.error_format) == compiler::ErrorFormat::Json;
-  print(streams, json ? report_json(scene, report) : report_text(scene, report));
+  print(streams, json ? report_json(scene, report) : report_text(scene, report, streams.verbosity > 0));
 }
 
 ExitCode check_moment(const CheckRequest& request, const SceneInput& input, const Streams& streams) {

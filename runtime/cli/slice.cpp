@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
-#include <thread>
 
+#include "runtime/base/machine.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/verbs.h"
@@ -23,9 +23,9 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kSliceExamples =
-    "fathom slice scene.json -o out.png                    # from the front\n"
-    "fathom slice scene.json -o out.png --axis y --at 0.5  # from above\n"
-    "fathom slice scene.json --show sign --box -1,-1,1,1 --size 1024x1024\n"
+    "fathom slice scene.fathom -o out.png                  # from the front\n"
+    "fathom slice scene.fathom -o out.png --axis y --at 0.5  # from above\n"
+    "fathom slice scene.fathom --show sign --box -1,-1,1,1 --size 1024x1024\n"
     "\n"
     "Across z the picture's right is +x and its up is +y. Across y right is +x and up is -z. Across x right is -z\n"
     "and up is +y. --box takes x,y across z, x,z across y, z,y across x.";
@@ -128,7 +128,7 @@ void note_invalid(const std::vector<float>& field, const Streams& streams) {
 int run_slice(std::span<const std::string> args, const Streams& streams) {
   SliceRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (const auto code = check_outputs(request.scene.path, {&request.output, 1}, streams)) return *code;
+  if (const auto code = check_outputs({&request.output, 1}, streams)) return *code;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
@@ -136,10 +136,10 @@ int run_slice(std::span<const std::string> args, const Streams& streams) {
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
 
   const runtime::Slice slice = place_slice(request, scene);
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = request.threads ? *request.threads : runtime::usable_processors();
   const auto wanted = request.show == kSign ? runtime::SliceValues::Sign : runtime::SliceValues::Exact;
   const std::vector<float> field =
-      runtime::evaluate_slice(scene.distance, slice, request.threads.value_or(processors), wanted);
+      runtime::evaluate_slice(scene.distance, slice, threads, wanted);
   note_invalid(field, streams);
   const Drawing drawing = draw(request, slice, field);
   const Fill fill = [&](runtime::AtomicFile& file) {

@@ -1,13 +1,14 @@
 #include "runtime/load/files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <istream>
+
+#include "runtime/base/machine.h"
 
 namespace fathom::runtime {
 namespace {
@@ -52,6 +53,8 @@ std::variant<std::string, FileFault> read_stream(std::istream& in, const compile
     }
   }
   if (in.bad()) return FileFault{std::strerror(errno)};
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // means nothing in UTF-8
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   return text;
 }
 
@@ -80,8 +83,7 @@ compiler::ImportReader import_reader(ImportFolder folder) {
 
 double allowed_memory(const compiler::Limits& limits) {
   if (limits.memory > 0) return limits.memory;
-  const double machine = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  return 0.75 * machine;
+  return 0.75 * usable_memory();
 }
 
 }  // namespace fathom::runtime

@@ -22,7 +22,7 @@ struct FileFault {
   bool too_large = false;  // the file can be read, but exceeds the limit `file-size`
 };
 
-// Return the whole text. Read no more than the limit `file-size`, whatever the kind of file.
+// Return the whole text without a byte order mark. Read no more than the limit `file-size`, whatever the kind of file.
 std::variant<std::string, FileFault> read_file(const std::string& path, const compiler::Limits& limits);
 std::variant<std::string, FileFault> read_stream(std::istream& in, const compiler::Limits& limits);
 
@@ -40,7 +40,7 @@ struct ImportFolder {
 // Returns a reader for files below the root. Links are resolved before the check.
 compiler::ImportReader import_reader(ImportFolder folder);
 
-// Returns the limit of memory in bytes, by default three quarters of the machine's memory.
+// Returns the limit of memory in bytes, by default three quarters of usable_memory().
 double allowed_memory(const compiler::Limits& limits);
 
 }  // namespace fathom::runtime
