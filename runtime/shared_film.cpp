@@ -1,5 +1,7 @@
 #include "runtime/shared_film.h"
 
+#include <algorithm>
+
 #include "runtime/film/film.h"
 
 namespace fathom::runtime {
@@ -51,7 +53,18 @@ bool SharedFilm::should_stop(bool first) {
   } else if (!first && options_.time_limit && seconds() >= *options_.time_limit) {
     end_ = RenderEnd::TimeLimit;
   }
-  return end_ == RenderEnd::Cancelled || (end_ == RenderEnd::TimeLimit && !first);
+  return end_ == RenderEnd::Cancelled || (end_ == RenderEnd::TimeLimit && (!first || is_late()));
+}
+
+bool SharedFilm::is_late() {
+  if (options_.cancel && options_.cancel->load(std::memory_order_relaxed)) {
+    end_ = RenderEnd::Cancelled;
+    double never = std::numeric_limits<double>::infinity();
+    cancelled_at_.compare_exchange_strong(never, seconds());
+  }
+  const double limit = options_.time_limit.value_or(std::numeric_limits<double>::infinity());
+  if (seconds() >= limit && end_ == RenderEnd::Done) end_ = RenderEnd::TimeLimit;
+  return seconds() >= kGraceSeconds + std::min<double>(limit, cancelled_at_);
 }
 
 double SharedFilm::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <mutex>
 
 #include "runtime/base/stats.h"
@@ -37,10 +38,14 @@ class SharedFilm {
   // True if the render has to stop; end() is then the reason. Call before beginning more work. `first` says that the
   // work is the first samples of pixels: no time limit holds for these, because there is no image without them.
   bool should_stop(bool first = false);
+  // True from kGraceSeconds after the render had to stop: units under way are abandoned then, and first samples, too.
+  bool is_late();
   RenderEnd end() const { return end_; }
   double seconds() const;
 
  private:
+  static constexpr double kGraceSeconds = 1;
+
   void report() const;  // calls on_progress; the mutex must be locked
 
   PartialRender& render_;
@@ -49,6 +54,7 @@ class SharedFilm {
   const std::uint64_t resumed_;
   const Clock::time_point start_;
   std::atomic<RenderEnd> end_ = RenderEnd::Done;
+  std::atomic<double> cancelled_at_ = std::numeric_limits<double>::infinity();  // seconds()
   std::mutex mutex_;
   std::uint64_t done_ = 0, rays_ = 0;
 };

@@ -1,5 +1,5 @@
 // One thread's work on a render: takes units, has the integrator follow their paths, and adds each unit to the image
-// when the unit's last path has ended.
+// when the unit's last path has ended. A unit whose paths are abandoned is not added.
 //
 // The paths of a stream end in any order, so a few units are open at once.
 // Tested by: tests/runtime/render_test.cpp
@@ -55,6 +55,7 @@ class UnitWorker : private PathSource, private SampleSink {
 
   std::size_t next(std::span<PathKey> keys) override;
   bool add(const PathKey& key, const PathSample& sample) override;
+  bool is_abandoned() override { return work_.shared_film.is_late(); }
   bool next_pixel();
   bool next_unit();
   void submit_unit(std::uint32_t number);

@@ -61,14 +61,14 @@ int run_render(std::span<const std::string> args, const Streams& streams) {
   // The Interruption exists from the start, so that a signal yields a checkpoint even while the scene is read and
   // compiled.
   std::optional<Interruption> interruption;
-  if (asks_for_checkpoint(args)) interruption.emplace();
+  if (asks_for_checkpoint(args)) interruption.emplace().begin_preparation();
   auto parsed = parse_render(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const RenderRequest& request = std::get<RenderRequest>(parsed);
   if (request.units.given()) return render_units(request, streams, interruption);
   if (const auto code = check_bits(image_files_of(request), streams)) return *code;
   if (request.frames.given()) return render_frames(request, streams, interruption);
-  if (const auto code = check_collisions(request.scene.path, output_files(request), streams)) return *code;
+  if (const auto code = claim_outputs(output_files(request), streams)) return *code;
   if (const auto code = check_outputs(request, streams)) return *code;
   if (request.watch) {
     interruption.reset();

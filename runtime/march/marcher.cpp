@@ -10,6 +10,8 @@ namespace {
 // Minimum number of rays searched side by side: two registers of doubles, and few enough not to be missed in the
 // stream.
 constexpr std::size_t kMinSearchBatch = 16;
+// Evaluations after which advance() returns, so that its caller may stop where each takes milliseconds.
+constexpr std::size_t kMaxSearchEvaluations = 2048;
 
 }  // namespace
 
@@ -49,9 +51,11 @@ void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& i
 void Marcher::search() {
   if (searched_.size() < min_batch_ && (live_ > 0 || searched_.empty())) return;
   const Stage before = clock_.enter(Stage::Certify);
+  std::size_t evaluations = 0;
   do {
+    evaluations += searched_.size();
     evaluate_searches();
-  } while (searched_.size() >= min_batch_);
+  } while (searched_.size() >= min_batch_ && evaluations < kMaxSearchEvaluations);
   clock_.enter(before);
 }
 

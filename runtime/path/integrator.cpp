@@ -41,7 +41,7 @@ void Integrator::run() {
   bool more = true;
   while (true) {
     while (more && !free_ids_.empty()) more = start_paths();
-    if (queues_.is_idle()) break;
+    if (queues_.is_idle() || source_.is_abandoned()) break;
     for (std::size_t field = 0; field < queues_.fields(); ++field) {
       if (queues_.is_due(field) && queues_.advance(field)) process_ray_hits(field);
     }

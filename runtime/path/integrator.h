@@ -47,6 +47,8 @@ class PathSource {
   // Fills `keys` from the front with the next paths and returns their number. A smaller number than asked for means
   // that there are no more paths.
   virtual std::size_t next(std::span<PathKey> keys) = 0;
+  // True if the paths under way are to be abandoned. Called between evaluations of the field.
+  virtual bool is_abandoned() { return false; }
 };
 
 // Takes the samples of paths that have ended, in no order.
@@ -61,7 +63,7 @@ class Integrator {
  public:
   Integrator(const RenderContext& context, PathSource& source, SampleSink& sink);
 
-  // Follows all paths of the source to their end.
+  // Follows all paths of the source to their end, unless it abandons them.
   void run();
   Stats stats() const;
 

@@ -68,8 +68,8 @@ struct RenderOptions : compiler::SettingsOverrides, Execution {
   // State of an earlier render with equal settings, except threads and tile. render() moves the state out and leaves
   // it empty, because a film is large.
   std::shared_ptr<PartialRender> resume_from;
-  // Seconds after which the render begins no unit of work, except for a pixel's first sample, and returns the samples
-  // so far. The render leaves out regions that are not built by then, unless it keeps the cost layer, which depends
+  // Seconds after which the render begins no unit of work, except for a pixel's first sample. A second later it
+  // abandons the units under way, and returns the samples so far. The render leaves out regions that are not built by then, unless it keeps the cost layer, which depends
   // on regions.
   std::optional<double> time_limit;
 
@@ -80,7 +80,8 @@ struct RenderOptions : compiler::SettingsOverrides, Execution {
   // which does not change during the call: threads that have finished a unit wait.
   using SnapshotReader = std::function<void(const std::function<void(const PartialRender&)>&)>;
   std::function<void(const SnapshotReader&)> on_tick;
-  // When true, the render begins no unit of work and returns the samples so far.
+  // When true, the render begins no unit of work, abandons those under way a second later, and returns the samples so
+  // far.
   const std::atomic<bool>* cancel = nullptr;
 };
 

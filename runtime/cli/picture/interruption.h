@@ -21,11 +21,15 @@ class Interruption {
 
   // Becomes true with the first signal that asks the render to stop.
   const std::atomic<bool>& stop() const;
+  // A signal ends the program, with kInterrupted, if what makes ready to render takes another two seconds. Then
+  // nothing is lost.
+  void begin_preparation();
+  void end_preparation();
   // True if SIGUSR1 has arrived since the last call.
   bool image_requested();
 
  private:
-  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+  static constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGALRM};
   std::array<struct sigaction, kSignals.size()> before_{};
 };
 

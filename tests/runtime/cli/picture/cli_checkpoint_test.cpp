@@ -254,7 +254,7 @@ TEST_CASE("cli checkpoint: no help names one in a folder that is gone", "[cli]")
   const Result gone = folder.run_script(
       "touch mark\n\"$fathom\" render " + options + " -q --resume --checkpoint-interval 0.01s &\npid=$!\n" +
       "while ! [ kept/now.film -nt mark ] && kill -0 $pid 2>/dev/null; do sleep 0.02; done\n" +
-      "rm -r kept\nkill -INT $pid 2>/dev/null\nwait $pid; echo $?\n");
+      "rm -r kept\ntouch kept\nkill -INT $pid 2>/dev/null\nwait $pid; echo $?\n");
   INFO(gone.err);
   CHECK(gone.out == "74\n");
   CHECK_THAT(gone.err, Contains("is not kept") && !Contains("an earlier state of it is in"));
@@ -306,9 +306,33 @@ TEST_CASE("cli checkpoint: what cannot be written is 74, and what was there stay
   CHECK(folder.files() == 5);  // the scenes, whole.exr and the checkpoint
   REQUIRE(folder.run("render slow.json -o a.exr --resume -q").code == 0);
   CHECK((folder.read("a.exr") == folder.read("whole.exr")));
-  const Result nowhere = folder.run("render slow.json -o a.exr --checkpoint missing/a.film");
+  const Result nowhere = folder.run("render slow.json -o a.exr --checkpoint slow.json/a.film");
   CHECK(nowhere.code == 74);
-  CHECK_THAT(nowhere.err, Contains("missing"));
+  CHECK_THAT(nowhere.err, Contains("slow.json"));
+}
+
+// One batch of rays took 110 s of processor time, and the limit was looked at between batches.
+TEST_CASE("cli checkpoint: a time limit and a signal end a render within a batch of rays", "[cli]") {
+  const Folder folder;
+  folder.write("slow.fathom", R"scene(fathom 1
+param time = 0.2
+background [1,1,1]
+camera (position = [-0.7843, 0.8493, 4], target = [0,0,0], fov = 45, shutter = 0.8)
+object ((expression("noise(3*x,3*y,3*z)*0.2 + length(x,y,z) - 0.7")).polar_repetition(5)).translate([-0.9626, 0, 0.8379 + 3*time])
+object ((((expression("length(x,y,z) - 0.792 + 0.05*sin(9*x)*sin(7*y+z)")) -{stairs = 0.2, steps = 3} ((expression("x^2+y^2*1.5+z^4 - 0.4593")).onion(0.05)).translate([-0.1476,0.2843,0.2733]))).twist(turn = 13.38)).translate([-0.3549, 0, 0.7537 + 3*time])
+object (((sphere(0.4022)).displacement(0.05*sin(8*x)*cos(7*y))).bend(turn = 7.203)).translate([-0.8008, 0, -0.1506 + 3*time])
+object plane([0,1,0], offset = -1)
+object ...[for i in 0..150: sphere(0.12).translate([2*random(i)-1, 2*random(i,1)-1, 2*random(i,2)-1])]
+)scene");
+  // The first unit takes a hundred times as long.
+  const Result limited = folder.run("render slow.fathom -o a.png --time-limit 0.5");
+  CHECK(limited.code == 0);
+  CHECK_THAT(limited.err, Contains("no pixel has a sample yet") && Contains("0 at most"));
+  CHECK_FALSE(folder.has("a.png"));
+  const Result stopped = folder.run_script(
+      "\"$fathom\" render slow.fathom -o b.png --checkpoint b.film &\npid=$!\nsleep 2\nkill -TERM $pid\nwait $pid; echo $?");
+  CHECK(stopped.out == "75\n");
+  CHECK_THAT(stopped.err, Contains("0 at most") || Contains("before the first ray"));
 }
 
 TEST_CASE("cli checkpoint: a time limit writes what there is and says so", "[cli]") {
