@@ -13,7 +13,7 @@ namespace fathom::cli {
 struct FrameRange {
   int first = 0, last = 1, step = 1;
 
-  int count() const { return (last - first + step - 1) / step; }
+  int count() const { return (last - first - 1) / step + 1; }
   int at(int index) const { return first + index * step; }
 };
 

@@ -125,8 +125,10 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
 }
 
 runtime::FilmHeader film_header(const compiler::CompiledScene& scene, const runtime::Settings& settings,
-                                const runtime::RenderOptions& options) {
-  return {render_identity(scene, settings, options),
+                                const runtime::RenderOptions& options, std::optional<int> frame) {
+  runtime::Identity identity = render_identity(scene, settings, options);
+  if (frame) identity.emplace_back(kFrameRow, std::to_string(*frame));
+  return {std::move(identity),
           image_attributes(scene, settings),
           settings.width,
           settings.height,

@@ -47,7 +47,6 @@ std::variant<PreparedRender*, ExitCode> PlanFrames::at(int index, const std::opt
   auto prepared = prepare_render(request, input_, cache_, streams_);
   if (const auto* code = std::get_if<ExitCode>(&prepared)) return fail_at(index, *code);
   picture_ = std::get<std::unique_ptr<PreparedRender>>(std::move(prepared));
-  picture_->request.frame.reset();  // progress is reported per unit, not per frame
   if (const auto code = check(*picture_, index)) return *code;
   index_ = index;
   return picture_.get();
@@ -64,11 +63,7 @@ std::optional<ExitCode> PlanFrames::check(const PreparedRender& picture, int ind
   const runtime::RenderOptions& options = picture.request.options;
   runtime::Identity there = plan_.identity,
                     here = render_identity(picture.scene, resolve(picture.scene, options), options);
-  if (index > 0) {
-    const auto moves = [](const auto& row) { return is_of_frame(row.first); };
-    std::erase_if(there, moves);
-    std::erase_if(here, moves);
-  }
+  if (index > 0) there = without_frame(there), here = without_frame(here);
   std::vector<std::string> differ = runtime::differences(there, here, "in the plan", "in this program");
   if (differ.empty()) return std::nullopt;
   differ.push_back("make the plan and render its units with the same program");

@@ -28,14 +28,12 @@ class PlanMerge {
   }
 
   ExitCode run() {
-    const auto frames = frames_to_merge();
-    if (const auto* code = std::get_if<ExitCode>(&frames)) return *code;
-    const auto& indices = std::get<std::vector<int>>(frames);
-    for (const int index : indices) {
-      if (const auto code = check(index)) return *code;
-    }
-    for (const int index : indices) {
-      if (const auto code = merge(index)) return *code;
+    if (const auto code = check_frames()) return *code;
+    for (const auto& step : {&PlanMerge::check, &PlanMerge::merge}) {
+      for (int index = 0; index < frame_count(); ++index) {
+        if (!is_asked(index)) continue;
+        if (const auto code = (this->*step)(index)) return *code;
+      }
     }
     return kDone;
   }
@@ -48,19 +46,22 @@ class PlanMerge {
     return plan_.grid.frames ? fmt::format("frame {}", plan_.grid.frames->at(index)) : "the picture";
   }
 
-  std::variant<std::vector<int>, ExitCode> frames_to_merge() const {
-    const auto& all = plan_.grid.frames;
+  int frame_count() const { return static_cast<int>(plan_.grid.frame_count()); }
+
+  bool is_asked(int index) const {
     const auto& wanted = request_.frames.range;
-    std::vector<int> indices;
-    for (int i = 0; i < static_cast<int>(plan_.grid.frame_count()); ++i) {
-      const int frame = all ? all->at(i) : 0;
-      const bool asked =
-          !wanted || (frame >= wanted->first && frame < wanted->last && (frame - wanted->first) % wanted->step == 0);
-      if (asked) indices.push_back(i);
+    if (!wanted || !plan_.grid.frames) return true;
+    const int frame = plan_.grid.frames->at(index);
+    return frame >= wanted->first && frame < wanted->last && (frame - wanted->first) % wanted->step == 0;
+  }
+
+  std::optional<ExitCode> check_frames() const {
+    if (!request_.frames.range) return std::nullopt;
+    if (!plan_.grid.frames) return fail(streams_, kUsage, "--frames: the plan is of a still");
+    for (int index = 0; index < frame_count(); ++index) {
+      if (is_asked(index)) return std::nullopt;
     }
-    if (wanted && !all) return fail(streams_, kUsage, "--frames: the plan is of a still");
-    if (indices.empty()) return fail(streams_, kUsage, "--frames: the plan has none of them");
-    return indices;
+    return fail(streams_, kUsage, "--frames: the plan has none of them");
   }
 
   // Checks by the film headers that all units of the frame exist.
@@ -75,7 +76,7 @@ class PlanMerge {
         fmt::format("render them: fathom render --plan {} --units {}", *request_.plan, text_of(status.left))};
     for (const auto& [unit, reason] : status.faults) help.push_back(reason);
     return fail(
-        streams_, kIo,
+        streams_, status.broken > 0 ? kBadScene : kIo,
         fmt::format("{} lacks {} of {}", name_of(index), status.units - status.done, count_of(status.units, "unit")),
         help);
   }
@@ -89,7 +90,7 @@ class PlanMerge {
                   {fmt::format("render it again: fathom render --plan {} --unit {}", *request_.plan, number)});
     }
     auto& film = std::get<runtime::FilmFile>(read);
-    if (const auto fault = fault_of(film, plan_.grid, unit_of(plan_.grid, number))) {
+    if (const auto fault = fault_of(film, plan_, unit_of(plan_.grid, number))) {
       return fail(streams_, kBadScene, fmt::format("`{}`: {}", file, *fault));
     }
     auto differ = runtime::differences(first ? first->header.identity : film.header.identity, film.header.identity,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,26 +16,20 @@ namespace {
 
 constexpr std::size_t kMaxFaults = 10;
 
-bool exists(const std::string& path) {
-  std::error_code error;
-  return std::filesystem::exists(path, error);
-}
-
-// Returns the fault of the unit's film: nullopt if the film is complete, "" if there is no film.
-std::optional<std::string> fault_in(const std::string& file, const PlanGrid& grid, const PlanUnit& unit, bool sums,
+// Returns the fault of the unit's film, nullopt if the film is complete.
+std::optional<std::string> fault_in(const std::string& file, const RenderPlan& plan, const PlanUnit& unit, bool sums,
                                     const runtime::ReadLimits& limits) {
-  if (!exists(file)) return "";
   const auto read = sums ? runtime::read_film(file, limits) : runtime::read_film_header(file, limits);
   if (const auto* read_error = std::get_if<runtime::FilmReadError>(&read)) return read_error->problem;
-  return fault_of(std::get<runtime::FilmFile>(read), grid, unit);
+  return fault_of(std::get<runtime::FilmFile>(read), plan, unit);
 }
 
-void add(std::vector<UnitRange>& ranges, std::uint64_t number) {
-  if (!ranges.empty() && ranges.back().last > number) return;
-  if (!ranges.empty() && ranges.back().last == number) {
-    ++ranges.back().last;
+// Appends a range that is not empty and begins no earlier than the last one ends, or within the last task.
+void append(std::vector<UnitRange>& ranges, UnitRange range) {
+  if (!ranges.empty() && range.first <= ranges.back().last) {
+    ranges.back().last = std::max(ranges.back().last, range.last);
   } else {
-    ranges.push_back({number, number + 1});
+    ranges.push_back(range);
   }
 }
 
@@ -56,21 +51,27 @@ std::variant<PlanStatus, ExitCode> status_of(const RenderPlan& plan, const std::
   if (const auto* code = std::get_if<ExitCode>(&found)) return *code;
   PlanStatus status;
   status.units = range.last - range.first;
-  for (std::uint64_t number = range.first; number < range.last; ++number) {
-    const std::string file = unit_file(folder, number);
-    const auto fault = fault_in(file, plan.grid, unit_of(plan.grid, number), sums, read_limits(limits));
-    if (!fault) {
+  std::uint64_t next = range.first;
+  const auto leave = [&](std::uint64_t last) {  // the units from `next`
+    if (next < last) append(status.left, {next / per_task, (last - 1) / per_task + 1});
+  };
+  for (const auto& [number, files] : unit_files(folder, range)) {
+    const std::string film = unit_file(folder, number);
+    const auto fault = files.film ? fault_in(film, plan, unit_of(plan.grid, number), sums, read_limits(limits))
+                                  : std::optional<std::string>();
+    if (files.film && !fault) {
+      leave(number);
+      next = number + 1;
       ++status.done;
-      continue;
-    }
-    add(status.left, number / per_task);
-    if (!fault->empty()) {
+      if (files.checkpoint) status.useless.push_back(film + kCheckpointEnding);
+    } else if (fault) {
       ++status.broken;
       if (status.faults.size() < kMaxFaults) status.faults.emplace_back(number, *fault);
     } else {
-      status.begun += exists(file + kCheckpointEnding);
+      ++status.begun;
     }
   }
+  leave(range.last);
   return status;
 }
 
@@ -92,6 +93,11 @@ int print_status(const StatusRequest& request, const compiler::Limits& limits, c
   if (const auto* code = std::get_if<ExitCode>(&looked)) return *code;
   const auto& status = std::get<PlanStatus>(looked);
   const bool complete = status.done == status.units;
+  for (const std::string& checkpoint : status.useless) {
+    std::error_code error;
+    const bool removed = std::filesystem::remove(checkpoint, error);
+    note(streams, fmt::format("`{}` lay beside its finished film{}", checkpoint, removed ? " and was removed" : ""));
+  }
   if (request.json) {
     print_json(status, plan.grid, streams);
     return complete ? kDone : kFoundProblems;

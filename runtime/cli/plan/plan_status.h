@@ -17,6 +17,7 @@ struct PlanStatus {
   std::uint64_t units = 0, done = 0, begun = 0, broken = 0;   // begun: has a checkpoint
   std::vector<UnitRange> left;                                // units (or tasks) still to be rendered, ascending
   std::vector<std::pair<std::uint64_t, std::string>> faults;  // the first broken units and their faults
+  std::vector<std::string> useless;                           // checkpoints beside finished films
 
   std::uint64_t missing() const { return units - done - begun - broken; }
 };

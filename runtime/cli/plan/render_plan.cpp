@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "compiler/artefact/compiled_file.h"
 #include "runtime/cli/options/output_file.h"
+#include "runtime/cli/picture/render_identity.h"
 #include "runtime/cli/plan/base64.h"
+#include "runtime/cli/request/render_request.h"
 #include "vm/encoding/digest.h"
 
 namespace fathom::cli {
@@ -92,6 +95,37 @@ bool is_possible(const PlanGrid& grid) {
          grid.spp >= grid.block && grid.spp <= static_cast<std::uint32_t>(compiler::kMaxSpp);
 }
 
+std::optional<std::string> value_of(const runtime::Identity& identity, std::string_view row) {
+  const auto found = std::ranges::find(identity, row, [](const auto& each) { return std::string_view(each.first); });
+  return found == identity.end() ? std::nullopt : std::optional(found->second);
+}
+
+// True if the grid divides the picture that the identity describes.
+bool is_of(const PlanGrid& grid, const runtime::Identity& identity) {
+  return value_of(identity, "size") == fmt::format("{}x{}", grid.width, grid.height) &&
+         value_of(identity, "spp") == std::to_string(grid.spp);
+}
+
+std::optional<std::string> frame_of(const PlanGrid& grid, const PlanUnit& unit) {
+  if (!grid.frames) return std::nullopt;
+  return std::to_string(grid.frames->at(unit.frame_index));
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    names.push_back(at->path().filename());
+  }
+  return names;
+}
+
+std::optional<std::uint64_t> leading_number(const std::string& name) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc() && number < kMaxUnits ? std::optional(number) : std::nullopt;
+}
+
 ExitCode refuse_folder(const std::string& folder, const std::string& held, const RenderPlan& plan,
                        const Streams& streams) {
   return fail(
@@ -131,7 +165,9 @@ std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const comp
     json.erase("digest");
     if (digest != digest_of(json)) return refuse("it was changed since it was made: its digest does not fit");
     RenderPlan plan = from_json(json);
-    if (!is_possible(plan.grid)) return refuse("its numbers do not go together");
+    if (!is_possible(plan.grid) || json.at("units") != plan.grid.units() || !is_of(plan.grid, plan.identity)) {
+      return refuse("its numbers do not go together");
+    }
     plan.digest = digest;
     return plan;
   } catch (const Json::exception&) {
@@ -140,9 +176,14 @@ std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const comp
 }
 
 bool is_of_frame(std::string_view row) {
-  constexpr std::array<std::string_view, 6> kRows = {"scene",         "program", "camera",
-                                                     "field of view", "seed",    "moments"};
+  constexpr std::array<std::string_view, 7> kRows = {"scene", "program", "camera", "field of view",
+                                                     "seed",  "moments", kFrameRow};
   return std::ranges::find(kRows, row) != kRows.end();
+}
+
+runtime::Identity without_frame(runtime::Identity identity) {
+  std::erase_if(identity, [](const auto& row) { return is_of_frame(row.first); });
+  return identity;
 }
 
 std::string units_folder(const std::string& plan) {
@@ -151,6 +192,25 @@ std::string units_folder(const std::string& plan) {
 
 std::string unit_file(const std::string& folder, std::uint64_t number) {
   return fmt::format("{}/{:03}/{:06}.film", folder, number / kUnitsPerFolder, number);
+}
+
+std::map<std::uint64_t, UnitFiles> unit_files(const std::string& folder, UnitRange range) {
+  std::map<std::uint64_t, UnitFiles> units;
+  const auto add_file = [&](const std::string& name) {
+    const std::optional<std::uint64_t> number = leading_number(name);
+    if (!number || *number < range.first || *number >= range.last) return;
+    const std::string film = std::filesystem::path(unit_file(folder, *number)).filename();
+    if (name == film) units[*number].film = true;
+    if (name == film + kCheckpointEnding) units[*number].checkpoint = true;
+  };
+  for (const std::string& name : names_in(folder)) {
+    const std::optional<std::uint64_t> thousand = leading_number(name);
+    const bool overlaps = thousand && *thousand * kUnitsPerFolder < range.last &&
+                          (*thousand + 1) * kUnitsPerFolder > range.first;
+    if (!overlaps) continue;
+    for (const std::string& file : names_in(folder + "/" + name)) add_file(file);
+  }
+  return units;
 }
 
 std::variant<bool, ExitCode> find_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams) {
@@ -169,9 +229,6 @@ std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan
   const auto found = find_folder(folder, plan, streams);
   if (const auto* code = std::get_if<ExitCode>(&found)) return *code;
   if (std::get<bool>(found)) return std::nullopt;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return fail(streams, kIo, fmt::format("cannot make the folder `{}`: {}", folder, error.message()));
   if (const auto problem = write_text(plan.digest + "\n", folder + "/" + kClaimName))
     return fail(streams, kIo, *problem);
   // A worker of another plan may have claimed the folder at the same moment.
@@ -180,10 +237,17 @@ std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan
   return std::nullopt;
 }
 
-std::optional<std::string> fault_of(const runtime::FilmFile& file, const PlanGrid& grid, const PlanUnit& unit) {
+std::optional<std::string> fault_of(const runtime::FilmFile& file, const RenderPlan& plan, const PlanUnit& unit) {
+  const PlanGrid& grid = plan.grid;
   const bool fits = file.header.width == grid.width && file.header.height == grid.height &&
                     file.shape.area == unit.area && !file.render.adaptive.used();
-  if (!fits || !(file.header.samples == unit.samples)) return "it is of another unit";
+  if (!fits || !(file.header.samples == unit.samples) ||
+      value_of(file.header.identity, kFrameRow) != frame_of(grid, unit)) {
+    return "it is of another unit";
+  }
+  const auto differ = runtime::differences(without_frame(plan.identity), without_frame(file.header.identity),
+                                           "in the plan", "in it");
+  if (!differ.empty()) return "it is of another render: " + differ.front();
   if (!file.render.covered.front().covers({unit.area, unit.samples})) return "it has not all samples";
   return std::nullopt;
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,7 @@
 
 #include "compiler/source/source.h"
 #include "runtime/cli/input/text_file.h"
+#include "runtime/cli/options/unit_options.h"
 #include "runtime/cli/plan/plan_grid.h"
 #include "runtime/film/film_file.h"
 
@@ -40,10 +42,17 @@ std::variant<RenderPlan, ExitCode> read_plan(const std::string& path, const comp
 
 // True for rows of the identity that may differ between frames of a plan. The other rows describe the whole plan.
 bool is_of_frame(std::string_view row);
+runtime::Identity without_frame(runtime::Identity identity);  // the rows of the whole plan
 
 // Returns the folder of the units: "frame.json" -> "frame.units".
 std::string units_folder(const std::string& plan);
 std::string unit_file(const std::string& folder, std::uint64_t number);
+
+// The units of a range that have a film or a checkpoint, by number. The time depends on their number, not on the range.
+struct UnitFiles {
+  bool film = false, checkpoint = false;
+};
+std::map<std::uint64_t, UnitFiles> unit_files(const std::string& folder, UnitRange range);
 
 // Creates the folder or checks that it belongs to this plan. Otherwise prints a message and returns an exit code.
 std::optional<ExitCode> claim_folder(const std::string& folder, const RenderPlan& plan, const Streams& streams);
@@ -53,6 +62,6 @@ std::variant<bool, ExitCode> find_folder(const std::string& folder, const Render
 
 // Returns nullopt if the film is complete and belongs to the unit, else the reason. `header` is the film file, for
 // which the header suffices.
-std::optional<std::string> fault_of(const runtime::FilmFile& header, const PlanGrid& grid, const PlanUnit& unit);
+std::optional<std::string> fault_of(const runtime::FilmFile& header, const RenderPlan& plan, const PlanUnit& unit);
 
 }  // namespace fathom::cli

@@ -33,6 +33,7 @@ class UnitRun {
     for (const UnitRange& range : ranges) {
       for (std::uint64_t number = range.first; number < range.last; ++number) {
         if (interruption_->stop()) return kInterrupted;
+        interruption_->begin_preparation();
         if (const ExitCode code = render(number); code != kDone) return code;
       }
     }
@@ -52,7 +53,6 @@ class UnitRun {
     const auto frame = pictures_.at(unit.frame_index, unit.area);
     if (const auto* code = std::get_if<ExitCode>(&frame)) return *code;
     PreparedRender& picture = *std::get<PreparedRender*>(frame);
-    if (const auto code = make_folder(file)) return *code;
     RenderRequest& request = picture.request;
     request.unit = number;
     request.outputs = {Output{file, nullptr}};
@@ -85,17 +85,9 @@ class UnitRun {
       if (!read_error->missing) note(streams_, fmt::format("{}; rendered again", read_error->problem));
       return false;
     }
-    const auto fault = fault_of(std::get<runtime::FilmFile>(read), plan_.grid, unit);
+    const auto fault = fault_of(std::get<runtime::FilmFile>(read), plan_, unit);
     if (fault) note(streams_, fmt::format("`{}`: {}; rendered again", file, *fault));
     return !fault;
-  }
-
-  std::optional<ExitCode> make_folder(const std::string& file) const {
-    std::error_code error;
-    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-    std::filesystem::create_directories(folder, error);
-    if (!error) return std::nullopt;
-    return fail(streams_, kIo, fmt::format("cannot make the folder `{}`: {}", folder.string(), error.message()));
   }
 
   void close() const {

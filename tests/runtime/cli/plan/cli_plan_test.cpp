@@ -156,6 +156,55 @@ TEST_CASE("cli plan: what was cut short or is of another unit is found and rende
   check_same(folder, "m.png", "w.png");
 }
 
+// Units that are whole frames have one size and one range of samples: a film of another frame counted as done.
+TEST_CASE("cli plan: a film of another frame is of another unit", "[cli]") {
+  const Folder folder;
+  folder.write("move.fathom",
+               "fathom 1\nparam time = 0\nbackground [1, 1, 1]\nobject sphere(0.5).translate([sin(time), 0, 0])\n");
+  const std::string tiles = GENERATE("1x1", "2x1");
+  const std::string plan = "plan move.fathom --frames 0:4 --size 16x12 -s 2 --no-pilot -q -o p.json --tiles ";
+  REQUIRE(folder.run(plan + tiles).code == 0);
+  REQUIRE(folder.run("render --plan p.json -q --units " + std::string(tiles == "1x1" ? "0:4" : "0:8")).code == 0);
+  const fs::path films = folder.path() / "p.units/000";
+  fs::copy_file(films / "000002.film", films / "000000.film", fs::copy_options::overwrite_existing);
+  const Result status = folder.run("plan --status p.json");
+  CHECK(status.code == 1);
+  CHECK_THAT(status.out, Contains("unit 0: it is of another unit"));
+  CHECK(folder.run("merge --plan p.json -q -o m.png").code == 65);
+  CHECK_THAT(folder.run("render --plan p.json --unit 0 -q").err, Contains("rendered again"));
+  CHECK(folder.run("merge --plan p.json -q -o m.png").code == 0);
+}
+
+// It asked for every unit's file: 400 million calls.
+TEST_CASE("cli plan: the status of a plan takes the time of the units that exist", "[cli]") {
+  const Folder folder;
+  folder.write("move.fathom", "fathom 1\nparam time = 0\nfilm(frames = 100000000)\nobject sphere(1 + time)\n");
+  const Result planned = folder.run(
+      "plan move.fathom --tiles 2x2 --frames 0:100000000 --size 64x48 -s 8 --no-pilot -q -o p.json");
+  INFO(planned.err);
+  REQUIRE(planned.code == 0);
+  CHECK_THAT(folder.run("plan --status p.json").out, Contains("units to be rendered: 0-399999999"));
+  CHECK(folder.run("merge --plan p.json -q -o m.png").code == 74);
+  REQUIRE(folder.run("render --plan p.json --units 5,399999999 -q").code == 0);
+  CHECK_THAT(folder.run("plan --status p.json").out,
+             Contains("2 done, 399999998 missing") && Contains("units to be rendered: 0-4,6-399999998\n"));
+  CHECK_THAT(folder.run("plan --status p.json --per-task 4").out, Contains("tasks to be rendered: 0-99999999\n"));
+}
+
+TEST_CASE("cli plan: a checkpoint beside a finished film is named and removed", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("plan ball.json --tiles 2x1 --no-pilot -q -o p.json").code == 0);
+  REQUIRE(folder.run("render --plan p.json --unit 0 -q").code == 0);
+  const fs::path films = folder.path() / "p.units/000";
+  fs::copy_file(films / "000000.film", films / "000000.film.checkpoint");
+  fs::copy_file(films / "000000.film", films / "000001.film.checkpoint");
+  const Result status = folder.run("plan --status p.json");
+  CHECK_THAT(status.out, Contains("1 done, 0 missing, 1 begun"));
+  CHECK_THAT(status.err, Contains("000000.film.checkpoint` lay beside its finished film and was removed"));
+  CHECK_FALSE(folder.has("p.units/000/000000.film.checkpoint"));
+  CHECK(folder.has("p.units/000/000001.film.checkpoint"));
+}
+
 TEST_CASE("cli plan: a queue's variable says which unit, or which task of several", "[cli]") {
   const Folder folder;
   REQUIRE(folder.run("plan ball.json --tiles 4x2 --sample-block 2 --no-pilot -q -o p.json").code == 0);
