@@ -1,0 +1,17 @@
+// An example of each code of an error or a warning: a file, the line `----- expected`, and its message. CMake embeds
+// one of the files in tests/golden/diagnostics per code, a text before a JSON scene.
+// Tested by: tests/runtime/cli/cli_explain_test.cpp
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace fathom::cli {
+
+struct ErrorExample {
+  std::string_view code, text;
+};
+
+std::span<const ErrorExample> error_examples();
+
+}  // namespace fathom::cli
