@@ -136,6 +136,8 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 
 bool AtomicFile::open_temporary() {
   const std::string folder = folder_of(target_);
+  std::error_code ignored;  // opening fails then, and says why
+  std::filesystem::create_directories(folder, ignored);
 #ifdef O_TMPFILE
   if (::access(kOpenFiles, X_OK) == 0) file_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file_ >= 0) {
@@ -244,7 +246,10 @@ std::optional<std::string> check_file_path(const std::string& path) {
   } else if (errno == ENAMETOOLONG) {
     return fmt::format("cannot write `{}`: {}", path, reason());
   }
-  const std::string folder = folder_of(*target);
+  std::string folder = folder_of(*target);
+  while (::stat(folder.c_str(), &status) != 0 && errno == ENOENT && folder_of(folder) != folder) {
+    folder = folder_of(folder);
+  }
   remove_left_behind(folder);
   int file = -1;
   const std::string name =

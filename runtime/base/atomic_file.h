@@ -3,6 +3,8 @@
 // leaves nothing behind, except between naming and renaming. The next check_file_path() in that folder removes the
 // file that was left there, `.fathom-PID-N`.
 //
+// Folders that are missing on the way to the target are made.
+//
 // Writing to a link writes the link's target. A replaced file leaves its permissions to the new one.
 //
 //     AtomicFile file(path);
@@ -70,8 +72,8 @@ class AtomicFile {
   std::optional<FileStamp> stamp_;
 };
 
-// Tests if a file can be written under this name, by creating and removing another file in its folder. Returns the
-// reason if not. Callers ask before the work that makes the file.
+// Tests if a file can be written under this name, by creating and removing another file in its folder, or in the
+// nearest folder above that exists. Returns the reason if not. Callers ask before the work that makes the file.
 std::optional<std::string> check_file_path(const std::string& path);
 
 // Writes the bytes to a file. Returns the reason when that fails, and then the target is as it was.

@@ -1,6 +1,6 @@
 // fathom chart: measures all ray-marching methods on a scene and draws charts, maps and a page.
 //
-//     $ fathom chart scene.json -o charts
+//     $ fathom chart scene.fathom -o charts
 //     scene: the default is on the Pareto front of time: camera yes, bounce yes, grazing yes
 //     wrote charts/index.html
 //
@@ -24,6 +24,7 @@
 #include "runtime/cli/chart_scenes.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/options/output_file.h"
+#include "runtime/cli/options/step_line.h"
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/image/image_io.h"
@@ -111,8 +112,10 @@ class Charts {
                     runtime::charted_methods().size()));
     const std::size_t count = static_cast<std::size_t>(request_.rays);
     const std::vector<runtime::RaySet> sets = runtime::make_ray_sets(scene, field, count, request_.seed);
+    StepLine line(streams_, section.name + ": rays");
     const auto rows =
         runtime::measure_rays(scene, field, sets, runtime::charted_methods(), request_.rounds, section.name);
+    line.end();
     rays_.insert(rays_.end(), rows.begin(), rows.end());
     using runtime::Cost;
     add_chart(section, "time", runtime::chart_a(rows, section.name, Cost::Time, provenance_),
@@ -144,7 +147,9 @@ class Charts {
     const runtime::ImagePlan& plan = request_.images;
     say(fmt::format("{}: pictures of {}x{}, {} seeds\n", section.name, plan.width, plan.height, plan.seeds));
     const std::vector<runtime::ImageVariant> variants = runtime::image_variants(scene);
+    StepLine line(streams_, section.name + ": pictures");
     const auto rows = runtime::measure_images(scene, variants, plan, section.name);
+    line.end();
     images_.insert(images_.end(), rows.begin(), rows.end());
     add_chart(section, "pictures", runtime::chart_b(rows, section.name, provenance_), runtime::kReadChartB);
     const bool has_lights = std::any_of(variants.begin(), variants.end(), [](const runtime::ImageVariant& way) {
@@ -183,14 +188,6 @@ class Charts {
   std::vector<runtime::ImageMeasurement> images_;
   std::optional<std::string> problem_;
 };
-
-// Creates the folder and checks that it is writable. Returns the problem, if any.
-std::optional<std::string> make_folder(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return fmt::format("cannot make the folder `{}`: {}", folder, error.message());
-  return runtime::check_image_path((std::filesystem::path(folder) / "map.png").string());
-}
 
 std::variant<std::vector<SceneInput>, ExitCode> read_scenes(const ChartRequest& request, const Streams& streams) {
   std::vector<SceneInput> sources;
@@ -237,14 +234,13 @@ int run_chart(std::span<const std::string> args, const Streams& streams) {
   auto parsed = parse_chart(args, streams);
   if (const int* code = std::get_if<int>(&parsed)) return *code;
   const ChartRequest& request = std::get<ChartRequest>(parsed);
-  // All scenes are compiled first, so that a scene with errors leaves no folder behind.
   const auto scenes = compile_scenes(request, streams);
   if (const auto* code = std::get_if<ExitCode>(&scenes)) return *code;
   const std::filesystem::path folder = request.folder;
   std::vector<std::string> texts;
   for (const char* name : {"index.html", "chart.csv", "images.csv"}) texts.push_back((folder / name).string());
-  if (const auto code = check_collisions(request.scene.path, texts, streams)) return *code;
-  if (const auto problem = make_folder(request.folder)) return fail(streams, kIo, *problem);
+  if (const auto code = claim_outputs(texts, streams)) return *code;
+  if (const auto problem = runtime::check_file_path(texts.front())) return fail(streams, kIo, *problem);
 
   Charts charts(request, streams);
   for (const auto& [name, scene] : std::get<std::vector<NamedScene>>(scenes)) charts.add(scene, name);

@@ -9,8 +9,8 @@ namespace {
 
 constexpr const char* kChartExamples =
     "fathom chart -o charts                     # the project's scenes\n"
-    "fathom chart scene.json -o charts          # charts/index.html shows it\n"
-    "fathom chart scene.json -o charts --no-images --rays 2000 --rounds 3";
+    "fathom chart scene.fathom -o charts        # charts/index.html shows it\n"
+    "fathom chart scene.fathom -o charts --no-images --rays 2000 --rounds 3";
 
 }  // namespace
 
@@ -45,6 +45,9 @@ std::variant<ChartRequest, int> parse_chart(std::span<const std::string> args, c
   if (const auto code = arguments.parse(args, streams)) return *code;
 
   request.folder = folder.value_or("chart");
+  if (request.folder == "-") {
+    return fail(streams, kUsage, "--output: charts cannot go to standard output: they are a folder of files");
+  }
   if (request.folder.empty()) return fail(streams, kUsage, "--output: the folder needs a name");
   request.rays = rays.value_or(request.rays);
   request.rounds = rounds.value_or(request.rounds);

@@ -8,6 +8,7 @@
 
 #include "compiler/artefact/listing.h"
 #include "compiler/artefact/programs.h"
+#include "compiler/frontend/text/read_text.h"
 #include "runtime/base/atomic_file.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/input/text_file.h"
@@ -19,8 +20,8 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kCompileExamples =
-    "fathom compile scene.json -o scene.fbc        # for every verb\n"
-    "fathom compile scene.json -o scene.fbc --strip --no-text\n"
+    "fathom compile scene.fathom -o scene.fbc      # for every verb\n"
+    "fathom compile scene.fathom -o scene.fbc --strip --no-text\n"
     "fathom compile old.fbc -o new.fbc             # compiled again from its text\n"
     "fathom render scene.fbc -o out.png -D r=0.3   # with a parameter";
 constexpr const char* kAsmExamples =
@@ -55,7 +56,14 @@ std::optional<std::string_view> other_kind(const std::string& path) {
   return std::nullopt;
 }
 
-std::optional<ExitCode> check_output(const std::string& input, const std::string& output, const Streams& streams) {
+// True if the text begins like a scene, and like no listing.
+bool is_scene(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != text.npos && (text[first] == '{' || text[first] == '/')) return true;
+  return compiler::is_text_scene(text) && text.find("\nmachine ") == text.npos;
+}
+
+std::optional<ExitCode> check_output(const std::string& output, const Streams& streams) {
   if (output.empty()) return fail(streams, kUsage, "-o FILE is missing", {"- writes to standard output"});
   if (output == "-") return std::nullopt;
   if (const auto kind = other_kind(output)) {
@@ -64,7 +72,7 @@ std::optional<ExitCode> check_output(const std::string& input, const std::string
     return fail(streams, kUsage,
                 fmt::format("`{}` is the name of {}, and this writes a compiled scene", output, *kind), help);
   }
-  if (const auto code = check_collisions(input, {output}, streams)) return code;
+  if (const auto code = claim_outputs({output}, streams)) return code;
   if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
   return std::nullopt;
 }
@@ -82,7 +90,7 @@ int run_compile(std::span<const std::string> args, const Streams& streams) {
   arguments.flag("--no-text", "Leave out the scene's text; then -D is refused, and `check` has nothing to prove",
                  no_text);
   if (const auto code = arguments.parse(args, streams)) return *code;
-  if (const auto code = check_output(scene_arguments.path, output.value_or(""), streams)) return *code;
+  if (const auto code = check_output(output.value_or(""), streams)) return *code;
   auto input = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&input)) return *code;
   const auto compiled =
@@ -105,10 +113,18 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   arguments.option("--error-format", "FORMAT", "Format of errors: text (default), short or json",
                    one_of({"text", "short", "json"}, error_format));
   if (const auto code = arguments.parse(args, streams)) return *code;
-  if (const auto code = check_output(path, output.value_or(""), streams)) return *code;
+  if (const auto code = check_output(output.value_or(""), streams)) return *code;
   auto text = read_text(path, limits, streams);
   if (const auto* read_error = std::get_if<ReadError>(&text)) return fail(streams, path, *read_error);
   const compiler::Source listing(source_name(path), std::get<std::string>(std::move(text)));
+  if (compiler::is_compiled_file(listing.text())) {
+    return fail_whole(path, "it is a compiled scene, not a listing",
+                      fmt::format("`fathom dump --stage file {}` prints its listing", path), error_format, streams);
+  }
+  if (is_scene(listing.text())) {
+    return fail_whole(path, "it is a scene, not a listing",
+                      fmt::format("`fathom compile {} -o scene.fbc` compiles it", path), error_format, streams);
+  }
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;
   const auto scene = compiler::read_listing(listing, diagnostics, contents);

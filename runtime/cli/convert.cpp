@@ -51,10 +51,7 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   if (!scene_arguments.definitions.empty()) {
     return fail(streams, kUsage, "`convert` keeps the parameters: -D is for what reads the scene it writes");
   }
-  if (output) {
-    if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
-    if (const auto problem = check_text_path(*output)) return fail(streams, kIo, *problem);
-  }
+  if (const auto code = check_text_output(output, streams)) return *code;
   auto read = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   compiler::Source& source = std::get<SceneText>(read).source;
@@ -64,7 +61,7 @@ int run_convert(std::span<const std::string> args, const Streams& streams) {
   std::string text;
   if (compiler::is_text_scene(source.text())) {
     const auto kept =
-        compiler::read_with_formulas(source, ignored, scene_arguments.limits, import_reader(scene_arguments));
+        compiler::read_with_formulas(source, ignored, scene_arguments.limits, import_reader(scene_arguments, streams));
     note_frozen(kept->frozen, source, streams);
     text = compiler::write_json(kept->file, compiler::comments_of_text(source, kept->file));
   } else {

@@ -178,9 +178,8 @@ ExitCode judge(const DiffRequest& request, const Measured& measured, const Strea
 int run_diff(std::span<const std::string> args, const Streams& streams) {
   DiffRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  for (const std::string& read : {request.first, request.second}) {
-    if (const auto code = check_outputs(read, map_of(request), streams)) return *code;
-  }
+  for (const std::string& read : {request.first, request.second}) streams.files.add_input(read);
+  if (const auto code = check_outputs(map_of(request), streams)) return *code;
   const auto first = read_colors(request.first, request.limits, streams),
              second = read_colors(request.second, request.limits, streams);
   if (const auto* code = std::get_if<ExitCode>(&first)) return *code;

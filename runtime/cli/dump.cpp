@@ -23,17 +23,17 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kDumpExamples =
-    "fathom dump scene.json                        # the distance program\n"
-    "fathom dump scene.json --program surface      # with the objects\n"
-    "fathom dump scene.json --stage graph          # after all passes\n"
-    "fathom dump scene.json --after graph          # before the first pass\n"
-    "fathom dump scene.json --diff                 # the changes of each pass\n"
+    "fathom dump scene.fathom                      # the distance program\n"
+    "fathom dump scene.fathom --program surface    # with the objects\n"
+    "fathom dump scene.fathom --stage graph        # after all passes\n"
+    "fathom dump scene.fathom --after graph        # before the first pass\n"
+    "fathom dump scene.fathom --diff               # the changes of each pass\n"
     "fathom dump --diff a.fbc b.fbc                # two programs compared\n"
-    "fathom dump scene.json --run --at 0,1,0       # the stacks at a point\n"
-    "fathom dump scene.json --stats                # the cost of each part\n"
+    "fathom dump scene.fathom --run --at 0,1,0     # the stacks at a point\n"
+    "fathom dump scene.fathom --stats              # the cost of each part\n"
     "fathom dump scene.fbc --stage file            # all, for `fathom asm`\n"
-    "fathom dump scene.json --region 0,1,0         # the part for a point\n"
-    "fathom dump scene.json --stage graph --format dot | dot -Tsvg > graph.svg";
+    "fathom dump scene.fathom --region 0,1,0       # the part for a point\n"
+    "fathom dump scene.fathom --stage graph --format dot | dot -Tsvg > graph.svg";
 
 enum Stage { kSyntax, kGraph, kBytecode, kFile };
 enum Format { kText, kJson, kDot, kMermaid };
@@ -79,7 +79,7 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
                   "use it with --stage graph, and without --stats or --program");
   }
   if (request.run != request.at.has_value()) {
-    return refuse("--run and --at go together", "fathom dump scene.json --run --at 0,1,0");
+    return refuse("--run and --at go together", "fathom dump scene.fathom --run --at 0,1,0");
   }
   if (request.run && (request.stage != kBytecode || request.stats || request.region || request.format > kText)) {
     return refuse("--run is about bytecode, as text", "leave out --stage graph, --stats, --region and --format");

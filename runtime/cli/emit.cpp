@@ -16,12 +16,12 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kEmitExamples =
-    "fathom emit cpp scene.json -o scene.h         # fathom_scene::distance(x, y, z)\n"
-    "fathom emit cpp scene.json --namespace wall   # wall::distance(x, y, z)\n"
-    "fathom emit glsl scene.json > scene.glsl      # scene_distance(p)\n"
-    "fathom emit glsl scene.json --name wall       # wall_distance(p)\n"
-    "fathom emit glsl scene.json --surfaces        # scene_surface(p), too\n"
-    "fathom emit html scene.json -o scene.html     # open it in a browser\n"
+    "fathom emit cpp scene.fathom -o scene.h       # fathom_scene::distance(x, y, z)\n"
+    "fathom emit cpp scene.fathom --namespace wall # wall::distance(x, y, z)\n"
+    "fathom emit glsl scene.fathom > scene.glsl    # scene_distance(p)\n"
+    "fathom emit glsl scene.fathom --name wall     # wall_distance(p)\n"
+    "fathom emit glsl scene.fathom --surfaces      # scene_surface(p), too\n"
+    "fathom emit html scene.fathom -o scene.html   # open it in a browser\n"
     "\n"
     "The C++ function is a template; the head of the file lists what a type needs apart from float and double. The "
     "text\n"
@@ -76,10 +76,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (request.language != kGlsl && request.surfaces) {
     return fail(streams, kUsage, "--surfaces is about GLSL", {"leave it out, or emit glsl"});
   }
-  if (!request.output) return std::nullopt;
-  if (const auto code = check_collisions(request.scene.path, {*request.output}, streams)) return code;
-  if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
-  return std::nullopt;
+  return check_text_output(request.output, streams);
 }
 
 std::string text_of(const compiler::CompiledScene& scene, const EmitRequest& request) {
@@ -103,14 +100,7 @@ int run_emit(std::span<const std::string> args, const Streams& streams) {
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   const auto& scene = std::get<compiler::CompiledScene>(compiled);
-  const std::string text = text_of(scene, request);
-  if (!request.output) {
-    streams.out << text;
-    return kDone;
-  }
-  if (const auto problem = write_text(text, *request.output)) return fail(streams, kIo, *problem);
-  say(streams, fmt::format("wrote {}", *request.output));
-  return kDone;
+  return write_text_output(text_of(scene, request), request.output, streams);
 }
 
 }  // namespace fathom::cli

@@ -20,10 +20,10 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kEvalExamples =
-    "fathom eval scene.json --at 0,1,0 --at -1,0.5,2\n"
-    "fathom eval scene.json --points points.txt --number f32   # lines of x y z\n"
-    "fathom eval scene.json --box -1,-1,-1,1,1,1               # bounds in a box\n"
-    "fathom eval scene.json --at 0,1,0 --after graph           # without passes";
+    "fathom eval scene.fathom --at 0,1,0 --at -1,0.5,2\n"
+    "fathom eval scene.fathom --points points.txt --number f32 # lines of x y z\n"
+    "fathom eval scene.fathom --box -1,-1,-1,1,1,1             # bounds in a box\n"
+    "fathom eval scene.fathom --at 0,1,0 --after graph         # without passes";
 
 enum Number { kF32, kF64, kRange };
 

@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "compiler/frontend/syntax/json_error.h"
 #include "compiler/frontend/text/format.h"
 #include "compiler/frontend/text/parse/parser.h"
 #include "compiler/frontend/text/read_text.h"
@@ -35,7 +36,7 @@ ExitCode format_file(const std::string& path, FmtMode mode, const compiler::Limi
                 {"`fathom convert` writes a JSON scene as text"});
   }
   compiler::Diagnostics diagnostics;
-  compiler::text::parse(source, diagnostics, limits);
+  if (compiler::check_text(source, diagnostics)) compiler::text::parse(source, diagnostics, limits);
   if (diagnostics.has_errors()) {
     streams.err << diagnostics.print(source, compiler::ErrorFormat::Text, streams.color);
     return kBadScene;

@@ -42,10 +42,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   arguments.option("-o,--output", "FILE", "Scene file to write (standard output)", any_text(output));
   arguments.flag("--bare", "Write the model alone, in front of a camera", bare);
   if (const auto code = arguments.parse(args, streams)) return *code;
-  if (output) {
-    if (const auto code = check_collisions(scene_arguments.path, {*output}, streams)) return *code;
-    if (const auto problem = check_text_path(*output)) return fail(streams, kIo, *problem);
-  }
+  if (const auto code = check_text_output(output, streams)) return *code;
   auto read = read_scene_text(scene_arguments, streams);
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& [source, compiled_file] = std::get<SceneText>(read);
@@ -56,7 +53,7 @@ int run_import(std::span<const std::string> args, const Streams& streams) {
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   compiler::Diagnostics ignored;  // compile_scene() has already printed the diagnostics
   std::optional<compiler::ReadScene> model =
-      compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments));
+      compiler::read_scene(source, ignored, scene_arguments.limits, {}, import_reader(scene_arguments, streams));
   const bool not_a_film =
       model && model->format != compiler::SceneFormat::Scene && model->format != compiler::SceneFormat::Text;
   if (!not_a_film && !compiled_file) {

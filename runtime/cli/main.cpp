@@ -51,7 +51,10 @@ Streams standard_streams() {
   const bool dumb = term == nullptr || std::string_view(term) == "dumb";
   const bool color = terminal && !dumb && (no_color == nullptr || *no_color == '\0');
   std::ios::sync_with_stdio(false);
-  return {std::cin, std::cout, std::cerr, terminal && !dumb, color, isatty(STDOUT_FILENO) != 0, terminal_columns()};
+  Streams streams{std::cin, std::cout,          std::cerr, terminal && !dumb, color, isatty(STDOUT_FILENO) != 0,
+                  terminal_columns()};
+  streams.shows_steps = true;
+  return streams;
 }
 
 }  // namespace

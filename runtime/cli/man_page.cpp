@@ -78,7 +78,7 @@ std::string manual() {
       ".SH NAME\nfathom \\- compile and render scenes made of signed distance fields\n"
       ".SH SYNOPSIS\n.B fathom\n.I verb\n.RI [ options ]\n.I arguments\n.br\n.B fathom help\n.I verb\n"
       ".SH DESCRIPTION\nFathom compiles scenes made of signed distance fields to a compact bytecode and "
-      "path\\-traces them.\nA scene is a JSON file.\n.SH VERBS\n",
+      "path\\-traces them.\nA scene is a text in a language of its own, or a JSON file.\n.SH VERBS\n",
       kVersion);
   for (const Verb& verb : kVerbs) text += verb_section(verb);
   text +=

@@ -19,8 +19,8 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kMergeExamples =
-    "fathom render scene.json -s 64 --sample-range 0:32 -o a.film    # here\n"
-    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # there\n"
+    "fathom render scene.fathom -s 64 --sample-range 0:32 -o a.film  # here\n"
+    "fathom render scene.fathom -s 64 --sample-range 32:64 -o b.film # there\n"
     "fathom merge a.film b.film -o out.exr -o out.png\n"
     "fathom merge left.film right.film -o whole.film   # to be merged again";
 
@@ -56,10 +56,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   if (request.pictures.outputs.empty()) return fail(streams, kUsage, "no file to write", {"name it with -o FILE"});
   if (const auto code = apply_format(request.pictures.outputs, request.format, streams)) return code;
   if (const auto code = check_bits(request.pictures, streams)) return code;
-  std::vector<std::string> files = files_of(request.pictures);
-  for (const std::string& input : request.inputs) {
-    if (const auto code = check_collisions(input, files, streams)) return code;
-  }
+  for (const std::string& input : request.inputs) streams.files.add_input(input);
+  if (const auto code = claim_outputs(files_of(request.pictures), streams)) return code;
   return check_paths(request.pictures, streams);
 }
 

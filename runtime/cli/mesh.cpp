@@ -9,12 +9,13 @@
 
 #include <chrono>
 #include <filesystem>
-#include <thread>
 
 #include "runtime/base/atomic_file.h"
+#include "runtime/base/machine.h"
 #include "runtime/cli/input/memory.h"
 #include "runtime/cli/input/scene_file.h"
 #include "runtime/cli/options/output_file.h"
+#include "runtime/cli/options/step_line.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/mesh/files/mesh_file.h"
 #include "runtime/mesh/make_mesh.h"
@@ -27,7 +28,7 @@ namespace {
 constexpr const char* kMeshExamples =
     "fathom mesh part.fathom -o part.3mf --unit mm                # for a printer\n"
     "fathom mesh part.fathom -o part.glb --tolerance 0.002\n"
-    "fathom mesh scene.json -o scene.ply --box -2,0,-2,2,3,2      # a part of a scene without end\n"
+    "fathom mesh scene.fathom -o scene.ply --box -2,0,-2,2,3,2    # a part of a scene without end\n"
     "\n"
     "The tolerance is the max distance of the mesh from the surface. Parts of the scene that are thinner than the\n"
     "tolerance may be lost, and are then named.";
@@ -44,6 +45,11 @@ struct MeshRequest {
   bool plain = false;
   std::optional<int> threads;
 };
+
+// The file beside an OBJ file that has its materials.
+std::string materials_path(const MeshRequest& request) {
+  return std::filesystem::path(request.output).replace_extension(".mtl").string();
+}
 
 std::string mesh_endings() {
   std::string endings;
@@ -177,9 +183,10 @@ std::optional<std::string> write_document(const MeshRequest& request, const runt
     case MeshFormat::Obj:
       break;
   }
-  const std::filesystem::path materials = std::filesystem::path(request.output).replace_extension(".mtl");
-  if (auto problem = runtime::write_file(encode_mtl(document), materials.string())) return problem;
-  return runtime::write_file(encode_obj(document, materials.filename().string()), request.output);
+  const std::string materials = materials_path(request);
+  if (auto problem = runtime::write_file(encode_mtl(document), materials)) return problem;
+  return runtime::write_file(encode_obj(document, std::filesystem::path(materials).filename().string()),
+                             request.output);
 }
 
 void summarise(const MeshRequest& request, const compiler::CompiledScene& scene, const runtime::MeshResult& result,
@@ -207,7 +214,9 @@ void summarise(const MeshRequest& request, const compiler::CompiledScene& scene,
 int run_mesh(std::span<const std::string> args, const Streams& streams) {
   MeshRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (const auto code = check_collisions(request.scene.path, {request.output}, streams)) return *code;
+  std::vector<std::string> outputs = {request.output};
+  if (request.format->format == runtime::MeshFormat::Obj) outputs.push_back(materials_path(request));
+  if (const auto code = claim_outputs(outputs, streams)) return *code;
   if (const auto problem = runtime::check_file_path(request.output)) return fail(streams, kIo, *problem);
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
@@ -223,15 +232,18 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
       runtime::mesh_options(box, request.tolerance, request.resolution.value_or(runtime::kDefaultResolution));
   options.simplifies = !request.plain;
   options.memory = allowed_memory(request.scene.limits);
-  options.threads = request.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  options.threads = request.threads ? *request.threads : runtime::usable_processors();
   auto last = start;
+  StepLine line(streams, "meshing");
   options.progress = [&](std::string_view step) {
+    line.begin(step);
     const auto now = std::chrono::steady_clock::now();
     if (streams.verbosity > 0)
       note(streams, fmt::format("{:.2f} s before: {}", std::chrono::duration<double>(now - last).count(), step));
     last = now;
   };
   runtime::MeshResult result = runtime::make_mesh(scene, box.box, options);
+  line.end();
   warn_of_lost_parts(scene, result, streams);
   if (result.end != runtime::MeshResult::End::Done) return fail_to_mesh(request, result, options.memory, streams);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;

@@ -83,8 +83,11 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
     return fail(streams, kUsage, "--per-task, --sums and --json go with --status");
   }
   if (!request.output) return fail(streams, kUsage, "no file to write", {"name it with -o plan.json"});
-  if (const auto code = check_collisions(request.render.scene.path, {*request.output}, streams)) return *code;
-  if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
+  if (request.output == "-") {
+    return fail(streams, kUsage, "a plan cannot go to standard output: its units lie in a folder beside it",
+                {"name a file with -o plan.json"});
+  }
+  if (const auto code = check_text_output(request.output, streams)) return *code;
   if (const auto code = resolve_options(request.render, streams)) return *code;
   return std::nullopt;
 }

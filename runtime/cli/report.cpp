@@ -11,6 +11,7 @@
 #include "runtime/cli/input/text_file.h"
 #include "runtime/cli/options/output_file.h"
 #include "runtime/cli/picture/prepared_render.h"
+#include "runtime/cli/picture/progress.h"
 #include "runtime/cli/report/report_page.h"
 #include "runtime/cli/verbs.h"
 
@@ -45,8 +46,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
     if (render.scene.path == "-") return fail(streams, kUsage, "no file to write", {"add -o report.html"});
     request.output = std::filesystem::path(render.scene.path).stem().string() + ".html";
   }
-  if (const auto code = check_collisions(render.scene.path, {*request.output}, streams)) return code;
-  if (const auto problem = check_text_path(*request.output)) return fail(streams, kIo, *problem);
+  if (const auto code = check_text_output(request.output, streams)) return code;
   render.quiet = true;
   render.options.profile = true;
   render.options.layers = runtime::kAllLayers;
@@ -63,6 +63,13 @@ std::variant<compiler::Report, ExitCode> report_of(const PreparedRender& picture
                                         {streams.in, messages, messages}, std::move(options));
   if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
   return make_report(graph, std::get<compiler::CompiledScene>(compiled).surfaces);
+}
+
+runtime::RenderResult render(PreparedRender& picture, const Streams& streams) {
+  if (streams.quiet || !streams.shows_steps) return runtime::render(picture.scene, picture.request.options);
+  ProgressLine line(streams);
+  picture.request.options.on_progress = [&](const runtime::Progress& progress) { line.update(progress); };
+  return runtime::render(picture.scene, picture.request.options);
 }
 
 std::string command_of(std::span<const std::string> args) {
@@ -92,16 +99,17 @@ int run_report(std::span<const std::string> args, const Streams& streams) {
   RenderCache cache;
   const auto prepared = prepare_render(request.render, input, cache, streams);
   if (const auto* code = std::get_if<ExitCode>(&prepared)) return *code;
-  const PreparedRender& picture = *std::get<std::unique_ptr<PreparedRender>>(prepared);
+  PreparedRender& picture = *std::get<std::unique_ptr<PreparedRender>>(prepared);
   std::ostringstream messages;
   const auto report = report_of(picture, input, messages, streams);
-  if (const auto* code = std::get_if<ExitCode>(&report)) return *code;
-  const runtime::RenderResult result = runtime::render(picture.scene, picture.request.options);
+  if (const auto* code = std::get_if<ExitCode>(&report)) {
+    streams.err << messages.str();
+    return *code;
+  }
+  const runtime::RenderResult result = render(picture, streams);
   const std::string page = report_page({picture.scene, std::get<compiler::Report>(report), result, command_of(args),
                                         std::move(messages).str(), chart});
-  if (const auto problem = write_text(page, *request.output)) return fail(streams, kIo, *problem);
-  say(streams, fmt::format("wrote {}", *request.output));
-  return kDone;
+  return write_text_output(page, request.output, streams);
 }
 
 }  // namespace fathom::cli

@@ -27,9 +27,6 @@ constexpr const char* kSchemaExamples =
 ExitCode write_extension(const std::string& folder, const Streams& streams) {
   for (const EditorFile& file : vscode_extension()) {
     const std::filesystem::path path = std::filesystem::path(folder) / file.path;
-    std::error_code error;
-    std::filesystem::create_directories(path.parent_path(), error);
-    if (error) return fail(streams, kIo, fmt::format("cannot make {}: {}", cli::quoted(folder), error.message()));
     if (const auto problem = write_text(file.text, path.string())) return fail(streams, kIo, *problem);
   }
   say(streams, fmt::format("wrote {}", folder));
@@ -50,9 +47,10 @@ int run_schema(std::span<const std::string> args, const Streams& streams) {
                    any_text(output));
   if (const auto code = arguments.parse(args, streams)) return *code;
   if (editor == 2) {
-    if (!output) return fail(streams, kUsage, "--editor vscode writes a folder: -o names it");
+    if (!output || output == "-") return fail(streams, kUsage, "--editor vscode writes a folder: -o names it");
     return write_extension(*output, streams);
   }
+  if (const auto code = check_text_output(output, streams)) return *code;
   const std::string text = editor == 1 ? vim_syntax() : compiler::scene_schema();
   return write_text_output(text, output, streams);
 }

@@ -89,7 +89,8 @@ std::string channel_names(const runtime::FloatImage& image) {
 int run_tonemap(std::span<const std::string> args, const Streams& streams) {
   TonemapRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  if (const auto code = check_outputs(request.input, {&*request.output, 1}, streams)) return *code;
+  streams.files.add_input(request.input);
+  if (const auto code = check_outputs({&*request.output, 1}, streams)) return *code;
   const auto read = runtime::read_image(request.input, read_limits(request.limits));
   if (const auto* read_error = std::get_if<runtime::ImageReadError>(&read)) {
     return fail(streams, read_error->missing ? kIo : kBadScene, read_error->problem);

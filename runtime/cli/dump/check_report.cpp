@@ -1,10 +1,13 @@
 #include "runtime/cli/dump/check_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "runtime/cli/options/streams.h"
@@ -85,9 +88,29 @@ std::string describe_parameters(const std::vector<compiler::Parameter>& paramete
   return out;
 }
 
-std::string objects_table(const compiler::Report& report, const compiler::Source& source) {
+// Says of how many objects the distances are exact, bounds, ...
+std::string count_classes(const compiler::Report& report) {
+  std::map<std::string_view, std::size_t> classes;
+  for (const compiler::ObjectReport& object : report.objects) ++classes[class_of(object.facts, report.in_cells)];
+  std::vector<std::string> counts;
+  for (const auto& [name, count] : classes) counts.push_back(fmt::format("{} {}", count, name));
+  return fmt::format("  {}: {}", count_of(report.objects.size(), "object"), fmt::join(counts, ", "));
+}
+
+// Lists the objects: if they are more than kMaxObjects, those that make steps the shortest, unless `all` is true.
+std::string objects_table(const compiler::Report& report, const compiler::Source& source, bool all) {
+  constexpr std::size_t kMaxObjects = 40, kShown = 10;
   std::vector<std::vector<std::string>> rows = {{"object", "distance", "Lipschitz", "step", "box", "costs most"}};
-  for (const compiler::ObjectReport& object : report.objects) {
+  std::vector<const compiler::ObjectReport*> objects;
+  for (const compiler::ObjectReport& object : report.objects) objects.push_back(&object);
+  std::string heading;
+  if (objects.size() > kMaxObjects && !all) {
+    std::ranges::stable_sort(objects, std::greater(), &compiler::ObjectReport::lipschitz);
+    objects.resize(kShown);
+    heading = fmt::format("{}; the {} with the shortest steps (-v lists all):\n", count_classes(report), kShown);
+  }
+  for (const compiler::ObjectReport* each : objects) {
+    const compiler::ObjectReport& object = *each;
     std::string costs;
     if (object.costliest) {
       costs = fmt::format("{} makes steps {:.3g}x shorter", text(object.costliest->place, source),
@@ -97,7 +120,7 @@ std::string objects_table(const compiler::Report& report, const compiler::Source
                     fmt::format("{:.4g}", object.lipschitz), fmt::format("{:.3g}", 1 / object.lipschitz),
                     describe(object.facts.box), costs});
   }
-  return table(rows);
+  return heading + table(rows);
 }
 
 // Returns the text of a span, truncated to kMost bytes.
@@ -138,12 +161,12 @@ std::string verdict(const ProbeRow& row) { return row.broken() ? "BROKEN" : row.
 
 }  // namespace
 
-std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report) {
+std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report, bool all_objects) {
   return fmt::format("{}: no errors\n  {}\n", scene.source.name(), scene.summary) +
          describe_program("distance", scene.distance) + describe_program("surface", scene.surface) +
          fmt::format("  {}, {}\n", count_of(scene.materials.size(), "material"),
                      count_of(scene.surfaces.size(), "surface")) +
-         describe_parameters(scene.parameters) + objects_table(report, scene.source) +
+         describe_parameters(scene.parameters) + objects_table(report, scene.source, all_objects) +
          certificate(report, scene.source);
 }
 

@@ -11,7 +11,8 @@
 
 namespace fathom::cli {
 
-std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report);
+// The text lists only those of many objects that make steps the shortest, unless `all_objects` is true.
+std::string report_text(const compiler::CompiledScene& scene, const compiler::Report& report, bool all_objects);
 std::string report_json(const compiler::CompiledScene& scene, const compiler::Report& report);
 
 // `culprits` are the rows of `rows` that have the wrong constants (see compiler::culprits()).

@@ -30,6 +30,7 @@ class FrameRun {
     if (const auto code = check()) return *code;
     for (int index = 0; index < sequence_.frames.count(); ++index) {
       if (interruption_->stop()) return stop(index, "interrupted", kInterrupted);
+      interruption_->begin_preparation();
       const auto left = time_left();
       if (left && !(*left > 0)) return stop(index, "the time limit ended the sequence", kDone);
       const ExitCode code = render(index);
@@ -82,7 +83,7 @@ class FrameRun {
                               checkpoint->path(), request.frame->number),
                   {"add --resume to go on from it", fmt::format("or remove `{}`", checkpoint->path())});
     }
-    if (const auto code = check_collisions(request_.scene.path, files, streams_)) return code;
+    if (const auto code = claim_outputs(files, streams_)) return code;
     if (const auto code = check_outputs(request_of(0), streams_)) return code;
     if (const auto problem = runtime::check_file_path(journal_path_)) return fail(streams_, kIo, *problem);
     if (const auto code = journal_.read(streams_)) return code;

@@ -6,7 +6,7 @@
 
 namespace fathom::cli {
 
-compiler::ImportReader import_reader(const SceneArguments& arguments) {
+compiler::ImportReader import_reader(const SceneArguments& arguments, const Streams& streams) {
   namespace fs = std::filesystem;
   return runtime::import_reader({
       // Imports of a scene from standard input are relative to the current folder.
@@ -15,7 +15,11 @@ compiler::ImportReader import_reader(const SceneArguments& arguments) {
       .limits = arguments.limits,
       .option = "--root",
       .remedy = "--root DIR names the folder that imports may be read from, as `--root scenes`",
-      .on_import = arguments.on_import,
+      .on_import =
+          [&streams, watch = arguments.on_import](const std::string& path) {
+            streams.files.add_input(path);
+            if (watch) watch(path);
+          },
   });
 }
 

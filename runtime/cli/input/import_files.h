@@ -7,7 +7,8 @@
 
 namespace fathom::cli {
 
-// Returns a reader for files below `--root`, by default the scene's folder. Links are resolved before the check.
-compiler::ImportReader import_reader(const SceneArguments& arguments);
+// Returns a reader for files below `--root`, by default the scene's folder. Links are resolved before the check. Adds
+// the files to the inputs in `streams`.
+compiler::ImportReader import_reader(const SceneArguments& arguments, const Streams& streams);
 
 }  // namespace fathom::cli

@@ -12,6 +12,8 @@
 #include "runtime/cli/input/memory.h"
 #include "runtime/cli/input/text_file.h"
 #include "runtime/cli/input/verbosity.h"
+#include "runtime/cli/options/output_file.h"
+#include "runtime/cli/options/step_line.h"
 #include "vm/encoding/printable.h"
 
 namespace fathom::cli {
@@ -40,6 +42,15 @@ std::string folder_name(const std::string& path) { return path == "-" ? "" : pat
 compiler::Definitions both(compiler::Definitions first, const compiler::Definitions& then) {
   first.insert(first.end(), then.begin(), then.end());
   return first;
+}
+
+// Adds the picture that the scene shows as background to the files that are read. Prints a message and returns an exit
+// code if an output would overwrite one of them.
+std::optional<ExitCode> check_inputs(const compiler::CompiledScene& scene, const Streams& streams) {
+  if (scene.background.type == compiler::Background::Type::Image) {
+    streams.files.add_input(scene.background.image.file);
+  }
+  return check_files(streams);
 }
 
 // True if the options ask for intermediate results of the compilation. on_pass does not count, because it only
@@ -129,7 +140,10 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
     const bool needs_text = !arguments.definitions.empty() || asks_for_graph(options);
     if (!needs_text) {
       auto scene = take_stored(*std::move(input.stored), arguments, streams);
-      if (const auto* read = std::get_if<compiler::CompiledScene>(&scene)) verbosity.describe(*read);
+      if (const auto* read = std::get_if<compiler::CompiledScene>(&scene)) {
+        if (const auto code = check_inputs(*read, streams)) return *code;
+        verbosity.describe(*read);
+      }
       return scene;
     }
     if (!input.stored->contents.text) return fail_without_text(arguments, streams);
@@ -141,20 +155,23 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   options.limits.memory = allowed_memory(arguments.limits);
   // A compiled file is rendered as is: its model is not put on a stage with ground and lamp.
   if (input.stored) options.stage = false;
-  if (const auto watch = verbosity.watch_compiler().on_pass) {
-    options.on_pass = [watch, own = options.on_pass](std::string_view pass, const compiler::Scene& graph) {
-      if (own) own(pass, graph);
-      watch(pass, graph);
-    };
-  }
-  if (!input.stored) options.imports = import_reader(arguments);
+  StepLine line(streams, "compiling " + source_name(arguments.path));
+  options.on_pass = [&line, watch = verbosity.watch_compiler().on_pass, own = options.on_pass](
+                        std::string_view pass, const compiler::Scene& graph) {
+    line.begin(pass);
+    if (own) own(pass, graph);
+    if (watch) watch(pass, graph);
+  };
+  if (!input.stored) options.imports = import_reader(arguments, streams);
   options.on_source = [&](const compiler::Source& whole) {
     if (!whole.imports().empty()) input.source = whole;
   };
   auto scene = compiler::compile(input.source, diagnostics, options);
+  line.end();
   if (scene && arguments.inspect) arguments.inspect(*scene, diagnostics);
   if (!diagnostics.all().empty()) print(diagnostics, named(input.source, arguments.path), arguments, streams);
   if (!scene) return about_definitions(diagnostics) ? kUsage : kBadScene;
+  if (const auto code = check_inputs(*scene, streams)) return *code;
   verbosity.describe(*scene);
   if (input.stored && options.lint && arguments.definitions.empty() &&
       compiler::scene_digest(*scene) != compiler::scene_digest(input.stored->scene)) {
@@ -182,7 +199,7 @@ std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, co
   const compiler::Definitions definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
   const auto animation =
-      compiler::read_animation(input.source, diagnostics, arguments.limits, definitions, import_reader(arguments));
+      compiler::read_animation(input.source, diagnostics, arguments.limits, definitions, import_reader(arguments, streams));
   if (animation) return *animation;  // compile_scene() reports the warnings later
   print(diagnostics, named(input.source, arguments.path), arguments, streams);
   return about_definitions(diagnostics) ? kUsage : kBadScene;

@@ -8,6 +8,10 @@ namespace fathom::cli {
 
 std::variant<std::string, ReadError> read_text(const std::string& path, const compiler::Limits& limits,
                                                const Streams& streams) {
+  if (path != "-") streams.files.add_input(path);
+  if (streams.files.conflict()) {
+    return ReadError{"it would be overwritten by an output", "give each output a name of its own", kUsage};
+  }
   auto text = path == "-" ? runtime::read_stream(streams.in, limits) : runtime::read_file(path, limits);
   if (auto* fault = std::get_if<runtime::FileFault>(&text)) {
     return ReadError{std::move(fault->reason), std::move(fault->remedy), fault->too_large ? kBadScene : kIo};

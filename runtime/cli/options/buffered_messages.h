@@ -16,7 +16,7 @@ class BufferedMessages {
   explicit BufferedMessages(const Streams& streams)
       : to_(streams.err), streams_{streams.in,    streams.out,          text_,           streams.terminal,
                                    streams.color, streams.out_terminal, streams.columns, streams.options,
-                                   streams.quiet, streams.verbosity} {}
+                                   streams.quiet, streams.verbosity,     streams.files} {}
 
   const Streams& streams() const { return streams_; }  // the streams whose messages are held
 

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <ostream>
-#include <set>
 #include <system_error>
 
 #include "compiler/scene/compiled_scene.h"
@@ -20,12 +19,6 @@ namespace fathom::cli {
 namespace {
 
 constexpr std::string_view kFilmEnding = ".film";
-
-// Returns one canonical name per file, however its path is spelled and whether or not the file exists.
-std::filesystem::path canonical_name(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
-}
 
 }  // namespace
 
@@ -155,6 +148,14 @@ std::optional<std::string> write_text(const std::string& text, const std::string
   return file ? std::nullopt : std::optional(fmt::format("cannot write `{}`", path));
 }
 
+std::optional<ExitCode> check_text_output(std::optional<std::string>& output, const Streams& streams) {
+  if (output == "-") output.reset();
+  if (!output) return std::nullopt;
+  if (const auto code = claim_outputs({*output}, streams)) return code;
+  if (const auto problem = check_text_path(*output)) return fail(streams, kIo, *problem);
+  return std::nullopt;
+}
+
 ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output,
                            const Streams& streams) {
   if (!output) {
@@ -178,23 +179,23 @@ std::optional<ExitCode> check_image_size(double width, double height, const comp
                          : compiler::raise(&compiler::Limits::pixels, pixels)});
 }
 
-std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,
-                                         const Streams& streams) {
-  std::set<std::filesystem::path> taken;
-  if (scene != "-") taken.insert(canonical_name(scene));
+std::optional<ExitCode> claim_outputs(const std::vector<std::string>& outputs, const Streams& streams) {
   for (const std::string& file : outputs) {
-    if (!taken.insert(canonical_name(file)).second) {
-      return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is read, or is another output", file),
-                  {"give each output a name of its own"});
-    }
+    if (!is_special(file)) streams.files.add_output(file);
   }
-  return std::nullopt;
+  return check_files(streams);
 }
 
-std::optional<ExitCode> check_outputs(const std::string& read, std::span<const Output> outputs,
-                                      const Streams& streams) {
+std::optional<ExitCode> check_files(const Streams& streams) {
+  const auto& conflict = streams.files.conflict();
+  if (!conflict) return std::nullopt;
+  return fail(streams, kUsage, fmt::format("`{}` would be overwritten: it is read, or is another output", *conflict),
+              {"give each output a name of its own"});
+}
+
+std::optional<ExitCode> check_outputs(std::span<const Output> outputs, const Streams& streams) {
   const std::vector<std::string> paths = paths_of(outputs);
-  if (const auto code = check_collisions(read, paths, streams)) return code;
+  if (const auto code = claim_outputs(paths, streams)) return code;
   for (const std::string& path : paths) {
     if (const auto problem = runtime::check_file_path(path)) return fail(streams, kIo, *problem);
   }

@@ -71,6 +71,8 @@ bool is_special(const std::string& path);  // true if `path` exists and is neith
 std::optional<std::string> check_text_path(const std::string& path);
 // Writes the text. Returns the problem, if any, and then the previous file is unchanged.
 [[nodiscard]] std::optional<std::string> write_text(const std::string& text, const std::string& path);
+// Prints a message and returns an exit code if the text cannot be written there. "-", standard output, becomes nullopt.
+std::optional<ExitCode> check_text_output(std::optional<std::string>& output, const Streams& streams);
 // Writes the text to the file that -o names and says so, or to standard output without -o.
 ExitCode write_text_output(const std::string& text, const std::optional<std::string>& output, const Streams& streams);
 
@@ -79,9 +81,8 @@ std::optional<ExitCode> check_image_size(double width, double height, const comp
                                          const Streams& streams);
 
 // Prints a message and returns an exit code if an output file is known in advance not to be writable, or if it would
-// overwrite the file `read` or another output.
-std::optional<ExitCode> check_outputs(const std::string& read, std::span<const Output> outputs,
-                                      const Streams& streams);
+// overwrite a file that the command has read or another output.
+std::optional<ExitCode> check_outputs(std::span<const Output> outputs, const Streams& streams);
 
 // True if an output with all layers goes to standard output.
 bool holds_whole(std::span<const Output> outputs);
@@ -89,8 +90,11 @@ bool holds_whole(std::span<const Output> outputs);
 // Returns the file names of the outputs, without standard output.
 std::vector<std::string> paths_of(std::span<const Output> outputs);
 
-// Prints a message and returns an exit code if one of `outputs` is the scene's file or equals another output.
-std::optional<ExitCode> check_collisions(const std::string& scene, const std::vector<std::string>& outputs,
-                                         const Streams& streams);
+// Prints a message and returns an exit code if one of `outputs` is a file that the command has read or another output.
+// Files that the command reads later must not be among them either.
+std::optional<ExitCode> claim_outputs(const std::vector<std::string>& outputs, const Streams& streams);
+
+// Prints a message and returns an exit code if an output would overwrite a file that is read, or another output.
+std::optional<ExitCode> check_files(const Streams& streams);
 
 }  // namespace fathom::cli

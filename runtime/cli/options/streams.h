@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "runtime/cli/options/exit_code.h"
+#include "runtime/cli/options/used_files.h"
 
 namespace fathom::cli {
 
@@ -31,6 +32,8 @@ struct Streams {
   // Options common to all verbs, set by Arguments: -q, and the count of -v for verbs without a -v of their own.
   mutable bool quiet = false;
   mutable int verbosity = 0;
+  mutable UsedFiles files = {};
+  bool shows_steps = false;  // `err` is read while the verb works, not kept for later
 };
 
 using Help = std::vector<std::string>;  // each string is one "= help:" line

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "runtime/cli/input/memory.h"
+#include "runtime/cli/options/version.h"
 #include "runtime/cli/picture/closing_lines.h"
 #include "runtime/cli/picture/cost_map.h"
 #include "runtime/cli/picture/image_warning.h"
@@ -18,8 +20,16 @@
 namespace fathom::cli {
 namespace {
 
-std::optional<std::string> write_stats(const std::string& path, const runtime::Stats& stats, const Streams& streams) {
-  const std::string text = runtime::to_json(stats);
+// Writes the name of the scene, what was rendered of it by which version, and the counts and times.
+std::optional<std::string> write_stats(const std::string& path, const std::string& scene,
+                                       const runtime::FilmHeader& header, const runtime::Stats& stats,
+                                       const Streams& streams) {
+  nlohmann::ordered_json json = {{"scene", scene}, {"commit", kCommit}};
+  for (const auto& [name, value] : header.identity) json["render"][name] = value;
+  json["width"] = header.width, json["height"] = header.height;
+  json["samples"] = {header.samples.first, header.samples.last};
+  json.update(nlohmann::ordered_json::parse(runtime::to_json(stats)));
+  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   if (path == "-") {
     streams.out << text;
     return std::nullopt;
@@ -72,7 +82,8 @@ RenderJob::RenderJob(PreparedRender& picture, const Streams& streams, WatchState
       streams_(streams),
       watching_(watching),
       interruption_(interruption),
-      header_(film_header(scene_, runtime::resolve(scene_, request_.options), request_.options)),
+      header_(film_header(scene_, runtime::resolve(scene_, request_.options), request_.options,
+                          request_.frame ? std::optional(request_.frame->number) : std::nullopt)),
       checkpoint_(checkpoint_of(request_)),
       line_(streams, frame_text(request_)) {}
 
@@ -80,6 +91,7 @@ ExitCode RenderJob::run() {
   if (const auto code = begin()) return *code;
   // Under --watch a stop signal ends the program at once.
   if (!watching_ && !interruption_) interruption_.emplace();
+  if (interruption_) interruption_->end_preparation();
   runtime::RenderResult result = render();
   line_.erase();
   if (watching_ && result.stats.end == runtime::RenderEnd::Cancelled) return kDone;
@@ -168,7 +180,7 @@ ExitCode RenderJob::end(runtime::RenderResult& result) {
   if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
   // An image without samples would replace a file that may be good. The film of an incomplete unit must not look
   // complete.
-  const bool pictures = request_.unit ? !undone : ended != End::Cancelled || result.film.samples() > 0;
+  const bool pictures = request_.unit ? !undone : !undone || result.film.samples() > 0;
   if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
   if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
   if (!pictures && !request_.unit) note(streams_, kNoPictureYet);
@@ -233,7 +245,7 @@ std::optional<std::string> RenderJob::write_all(runtime::RenderResult& result, b
   if (pictures) problem = write_image_files(image_files_of(request_), header_, result, seconds, lines, streams_);
   if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
   result.stats.peak_memory = runtime::peak_memory();
-  if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, result.stats, streams_);
+  if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, scene_.source.name(), header_, result.stats, streams_);
   if (!request_.quiet) print_closing(result, lines);
   return problem;
 }

@@ -70,7 +70,7 @@ std::vector<Section> sections_of(const ReportContents& contents) {
                    escape_markup(runtime::live_page(scene)))},
       {"source", "Scene",
        "<div class=\"scroll\" tabindex=\"0\"><table>\n" + source_lines(scene) + "</table></div>\n"},
-      {"check", "Check", pre(contents.messages + report_text(scene, contents.report))},
+      {"check", "Check", pre(contents.messages + report_text(scene, contents.report, true))},
       {"layers", "Layers",
        "<div class=\"pictures\">\n" + layer(Layer::Albedo, "albedo") + layer(Layer::Normal, "normal") +
            layer(Layer::Depth, "depth") + "</div>\n"},

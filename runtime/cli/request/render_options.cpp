@@ -9,16 +9,16 @@ namespace fathom::cli {
 namespace {
 
 constexpr const char* kRenderExamples =
-    "fathom render scene.json -o out.png\n"
-    "fathom render scene.json -o out.png -r 1920 --aspect 16:9 -s 256\n"
-    "fathom render scene.json -o out.png -a -d -n          # and out-albedo.png, ...\n"
-    "fathom render scene.json -o out.exr -o out.png --tone agx\n"
-    "fathom render scene.json -o - --size 64x64 | display  # PNG to a program\n"
-    "fathom render scene.json -o out.png -s 64 --denoise   # and out-noisy.png\n"
-    "fathom render scene.json --preview --watch            # again when it is saved\n"
-    "fathom render scene.json --profile --cost-map cost.png\n"
-    "fathom render scene.json -s 4096 --resume             # continues a render\n"
-    "fathom render scene.json -s 64 --sample-range 32:64 -o b.film   # a part\n"
+    "fathom render scene.fathom -o out.png\n"
+    "fathom render scene.fathom -o out.png -r 1920 --aspect 16:9 -s 256\n"
+    "fathom render scene.fathom -o out.png -a -d -n        # and out-albedo.png, ...\n"
+    "fathom render scene.fathom -o out.exr -o out.png --tone agx\n"
+    "fathom render scene.fathom -o - --size 64x64 | display  # PNG to a program\n"
+    "fathom render scene.fathom -o out.png -s 64 --denoise # and out-noisy.png\n"
+    "fathom render scene.fathom --preview --watch          # again when it is saved\n"
+    "fathom render scene.fathom --profile --cost-map cost.png\n"
+    "fathom render scene.fathom -s 4096 --resume           # continues a render\n"
+    "fathom render scene.fathom -s 64 --sample-range 32:64 -o b.film # a part\n"
     "fathom render hop.fathom --frames 0:192 --fps 24 -o frames/hop.png   # and hop-0001.png, ...";
 
 void add_verbosity_options(Arguments& arguments, RenderRequest& request) {

@@ -51,7 +51,7 @@ Listing list_check(const LoadedScene& loaded) {
                                         {in, messages, messages}, std::move(options));
   const auto* scene = std::get_if<compiler::CompiledScene>(&compiled);
   if (!scene) return {422, std::move(messages).str()};
-  return {200, std::move(messages).str() + report_text(*scene, make_report(graph, scene->surfaces))};
+  return {200, std::move(messages).str() + report_text(*scene, make_report(graph, scene->surfaces), true)};
 }
 
 Listing list_run(const compiler::CompiledScene& scene, glm::dvec3 point) {

@@ -77,9 +77,19 @@ TEST_CASE("atomic files: a name as long as names can be is written, a longer one
   REQUIRE(check_file_path(folder.file(longest + "n")));
   CHECK(check_file_path(folder.file(longest + "n"))->find("too long") != std::string::npos);
   CHECK(write_file(kBytes, folder.file(longest + "n")));
-  CHECK(check_file_path(folder.file("missing/a")));
   CHECK(check_file_path("/dev/null"));
   CHECK(folder.files() == 1);
+}
+
+TEST_CASE("atomic files: missing folders are made when the file is written, not before", "[base]") {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.file("a/b/c");
+  CHECK_FALSE(check_file_path(file));
+  CHECK(folder.files() == 0);
+  CHECK_FALSE(write_file(kBytes, file));
+  CHECK(fs::file_size(file) == 3);
+  CHECK(check_file_path(folder.file("a/b/c/d")));
+  CHECK(write_file(kBytes, folder.file("a/b/c/d/e")));
 }
 
 TEST_CASE("atomic files: what a killed program left is removed, what another is writing is not", "[base]") {

@@ -144,9 +144,9 @@ TEST_CASE("cli: chart says what is wrong, and leaves nothing behind", "[cli]") {
       {"ball.json -D radius", 2, "--define: `radius` is not a name and a value"},
       {"missing.json", 74, "cannot read `missing.json`: No such file or directory"},
       {"bad.json", 65, "did you mean `sphere`?"},
-      {"ball.json -o bad.json", 74, "cannot make the folder `bad.json`: "},
-      {"ball.json -o bad.json/charts", 74, "cannot make the folder `bad.json/charts`: "},
-      {"ball.json -o /proc/charts", 74, "cannot make the folder `/proc/charts`: "},
+      {"ball.json -o bad.json", 74, "cannot write to the folder `bad.json`: "},
+      {"ball.json -o bad.json/charts", 74, "cannot write to the folder `bad.json/charts`: "},
+      {"ball.json -o /proc/charts", 74, "cannot write to the folder `/proc`: "},
   };
   const Folder folder;
   folder.write("bad.json", R"({"version": 1, "objects": [{"type": "spere", "radius": 1}]})");

@@ -1,4 +1,5 @@
 // fathom check: the exactness report and the probe.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
@@ -52,6 +53,19 @@ TEST_CASE("cli: check says how exact each object is and what costs the most", "[
   CHECK_THAT(rope.out, Contains("\ncertified: every step length is proved\n"));
   CHECK_THAT(folder.run("check bulb.json").out,
              Contains("\nnot certified: nothing is proved of the mandelbulb at bulb.json:4:5\n"));
+}
+
+TEST_CASE("cli: check sums up more than 40 objects", "[cli]") {
+  const Folder folder;
+  folder.write("many.fathom",
+               "fathom 1\nbackground [1, 1, 1]\nobject ...[for i in 0..40: sphere(0.3).translate([i, 0, 0])]\n"
+               "object box([1, 1, 1]).twist(90)\n");
+  const Result sums = folder.run("check many.fathom");
+  CHECK(sums.code == 0);
+  CHECK_THAT(sums.out, Contains("  41 objects: 1 bound, 40 exact; the 10 with the shortest steps (-v lists all):\n"));
+  CHECK(std::count(sums.out.begin(), sums.out.end(), '\n') < 30);
+  const std::string all = folder.run("check -v many.fathom").out;
+  CHECK(std::count(all.begin(), all.end(), '\n') > 45);
 }
 
 // Regression: the location was that of the whole formula, the first line of an expression list.

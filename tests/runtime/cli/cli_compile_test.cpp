@@ -254,7 +254,7 @@ TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {
   CHECK_THAT(folder.run("compile ball.json").err, Contains("-o FILE is missing"));
   CHECK(folder.run("compile ball.json").code == 2);
   CHECK(folder.run("compile ball.json -o ball.json").code == 2);
-  CHECK(folder.run("compile ball.json -o none/ball.fbc").code == 74);
+  CHECK(folder.run("compile ball.json -o ball.json/ball.fbc").code == 74);
   CHECK(folder.run("compile none.json -o ball.fbc").code == 74);
   folder.write("bad.txt", "sphere 1\nspher 2\n");
   const Result refused = folder.run("asm bad.txt -o bad.fbc");
@@ -263,6 +263,22 @@ TEST_CASE("compile and asm say what is missing or wrong", "[cli]") {
   CHECK_FALSE(folder.has("bad.fbc"));
   REQUIRE(folder.run("asm - -o ball.fbc", "sphere 1\n").code == 0);
   CHECK(folder.run("eval ball.fbc --at 0,0,3").out.starts_with("2 "));
+}
+
+TEST_CASE("asm: what is no listing is named", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("compile ball.json -o ball.fbc").code == 0);
+  folder.write("ball.fathom", "fathom 1\nobject sphere(1)\n");
+  const auto error = [&](const std::string& arguments, const std::string& in = "") {
+    const Result result = folder.run("asm -o a.fbc " + arguments, in);
+    CHECK(result.code == 65);
+    return result.err;
+  };
+  CHECK_THAT(error("ball.fbc"), Contains("it is a compiled scene, not a listing") && Contains("dump --stage file"));
+  CHECK_THAT(error("ball.json"), Contains("it is a scene, not a listing") && Contains("fathom compile ball.json"));
+  CHECK_THAT(error("ball.fathom"), Contains("it is a scene, not a listing"));
+  CHECK_THAT(error("-", "sphere 1 2\n"), Contains("`sphere` takes 1 number (") && Contains("not 2"));
+  CHECK_THAT(error("-", "x\ntee 2\n"), Contains("`locals 3` is missing before its instructions"));
 }
 
 }  // namespace fathom::test::cli_compile_test

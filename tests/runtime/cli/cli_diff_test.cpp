@@ -93,7 +93,7 @@ TEST_CASE("cli: pictures that cannot be compared", "[cli]") {
   CHECK(folder.run("diff a.pfm b.pfm --metric flip").code == 2);
   CHECK(folder.run("diff a.pfm b.pfm --tol -1").code == 2);
   CHECK(folder.run("diff a.pfm b.pfm --tol 1 --metric mean").code == 2);
-  CHECK(folder.run("diff a.pfm b.pfm -o missing/map.png").code == 74);
+  CHECK(folder.run("diff a.pfm b.pfm -o a.pfm/map.png").code == 74);
 }
 
 }  // namespace fathom::cli_diff_test

@@ -51,7 +51,7 @@ TEST_CASE("emit says what it cannot do", "[cli][emit]") {
   refused("cpp ball.json --namespace std", 2, "standard library");
   refused("glsl ball.json --name gl_x", 2, "GLSL keeps names");
   refused("cpp ball.json -o ball.json", 2, "would be overwritten");
-  refused("cpp ball.json -o no/such/folder/ball.h", 74, "cannot write to the folder `no/such/folder`");
+  refused("cpp ball.json -o ball.json/ball.h", 74, "cannot write to the folder `ball.json`");
   refused("cpp nothing.json", 74, "nothing.json");
   folder.write("bad.json", "{");
   refused("cpp bad.json", 65, "bad.json");

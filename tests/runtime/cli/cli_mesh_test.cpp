@@ -70,7 +70,7 @@ TEST_CASE("cli: mesh reports wrong options, too much memory and files that canno
   CHECK(code("-o a.stl --tolerance 0.1 --resolution 10") == 2);
   CHECK(code("-o a.stl --tolerance 0") == 2);
   CHECK(code("-o a.stl --unit foot") == 2);
-  CHECK(code("-o missing/a.stl") == 74);
+  CHECK(code("-o ball.json/a.stl") == 74);
   const Result memory = folder.run("mesh ball.json -o a.stl --resolution 4000 --limit memory=10000000");
   CHECK(memory.code == 2);
   CHECK_THAT(memory.err, Contains("memory") && Contains("larger --tolerance"));

@@ -80,7 +80,7 @@ TEST_CASE("report: says what it cannot do", "[cli][report]") {
   const Folder folder;
   CHECK(folder.run("report none.json").code == 74);
   CHECK(folder.run("report ball.json --chart none.svg").code == 74);
-  CHECK(folder.run("report ball.json -o none/page.html").code == 74);
+  CHECK(folder.run("report ball.json -o ball.json/page.html").code == 74);
   CHECK(folder.run("report ball.json -o ball.json").code == 2);
   CHECK(folder.run("report -", kBall).code == 2);
   CHECK(folder.run("report - -o page.html", kBall).code == 0);

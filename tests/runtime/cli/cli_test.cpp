@@ -28,10 +28,10 @@ TEST_CASE("cli: files that cannot be read or written are exit code 74", "[cli]")
   CHECK_THAT(folder.run("check .").err, Contains("cannot read `.`: it is a directory"));
   CHECK(folder.run("check .").code == 74);
   CHECK(folder.run("eval ball.json --points missing.txt").code == 74);
-  for (const char* output : {"-o missing/out.png", "-o out.png --stats-json missing/s.json"}) {
+  for (const char* output : {"-o ball.json/out.png", "-o out.png --stats-json ball.json/s.json"}) {
     const Result result = folder.run(std::string("render ball.json ") + output);
     CHECK(result.code == 74);
-    CHECK_THAT(result.err, Contains("`missing`"));
+    CHECK_THAT(result.err, Contains("cannot write to the folder `ball.json`"));
     CHECK_THAT(result.err, !Contains("drew"));  // the error comes before rendering
   }
   CHECK(folder.run("dump ball.json").code == 0);
@@ -143,7 +143,10 @@ TEST_CASE("cli: render writes the picture, and what is asked for beside it", "[c
   }
   CHECK(folder.files() == 2 + 9);
   CHECK(png_size(folder.read("a.png")) == std::pair(32, 16));
-  CHECK_THAT(folder.read("stats.json"), Contains("\"primary_rays\": 1024"));  // 32 * 16 * 2
+  CHECK_THAT(folder.read("stats.json"), Contains("\"primary_rays\": 1024") &&  // 32 * 16 * 2
+                                            Contains("\"scene\": \"ball.json\"") && Contains("\"program\": \"") &&
+                                            Contains("\"size\": \"32x16\"") && Contains("\"spp\": \"2\"") &&
+                                            Contains("\"seed\": \"0\"") && Contains("\"fathom\": \""));
 }
 
 TEST_CASE("cli: without -o the picture is named after the scene, in the current folder", "[cli]") {

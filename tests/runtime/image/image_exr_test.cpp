@@ -128,7 +128,7 @@ TEST_CASE("image_exr: a file that cannot be written leaves nothing", "[image]") 
   const test::TemporaryFolder folder;
   const Film film(4, 4);
   const ImageRows rows = rows_of(film, 4, 4, glm::dvec3(0), {});
-  CHECK(write_exr(rows, folder.file("none/a.exr"))->find("No such file") != std::string::npos);
+  CHECK(write_exr(rows, "/dev/null/a.exr")->find("Not a directory") != std::string::npos);
   std::filesystem::create_directory(folder.file("b.exr"));
   CHECK(write_exr(rows, folder.file("b.exr")).has_value());
   CHECK(write_exr(rows, "/dev/null")->find("not a regular file") != std::string::npos);

@@ -53,7 +53,7 @@ TEST_CASE("image_io: each file has its format's header, and the size", "[image]"
 
 TEST_CASE("image_io: a failure leaves what was there and nothing else", "[image]") {
   const test::TemporaryFolder folder;
-  CHECK(write_image(gradient(2, 2), folder.file("none/a.png")).has_value());
+  CHECK(write_image(gradient(2, 2), "/dev/null/a.png").has_value());
   CHECK(write_image(gradient(2, 2), folder.file("a.gif")).has_value());
   std::filesystem::create_directory(folder.file("b.png"));
   CHECK(write_image(gradient(2, 2), folder.file("b.png")).has_value());
@@ -84,7 +84,7 @@ TEST_CASE("image_io: a float map holds the values, the lowest row first", "[imag
   CHECK(is_float_map("a.b/c.pfm"));
   CHECK_FALSE(is_float_map("a.pfm/c"));
   CHECK_FALSE(is_float_map("pfm"));
-  CHECK(write_float_map(values, 3, 2, folder.file("none/a.pfm")).has_value());
+  CHECK(write_float_map(values, 3, 2, folder.file("a.PFM/b.pfm")).has_value());
   CHECK(folder.files() == 1);
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("image_io: a path is refused before rendering, with the reason", "[ima
   for (const char* ending : {".png", ".jpg", ".jpeg", ".bmp", ".exr", ".pfm", ".hdr"}) {
     CHECK(check_image_path("a.tga")->find(ending) != std::string::npos);
   }
-  CHECK(check_image_path("no/such/folder/a.png")->find("no/such/folder") != std::string::npos);
+  CHECK(check_image_path("/dev/null/folder/a.png")->find("/dev/null/folder") != std::string::npos);
   CHECK(check_image_path("a.png") == std::nullopt);
 }
 

@@ -186,7 +186,7 @@ TEST_CASE("cli frames: what makes no sense with them is refused, and what they a
     CHECK(result.code == 2);
     CHECK_THAT(result.err, Contains(each.message));
   }
-  CHECK(folder.run("render hop.fathom --frames 0:2 -o none/a.png").code == 74);
+  CHECK(folder.run("render hop.fathom --frames 0:2 -o ball.json/a.png").code == 74);
   folder.write("a.frames", "something of mine");
   const Result foreign = folder.run("render hop.fathom --frames 0:2 -o a.png");
   CHECK(foreign.code == 65);

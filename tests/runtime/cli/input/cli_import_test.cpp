@@ -94,7 +94,7 @@ TEST_CASE("cli: import refuses scenes, mistakes, and its own input as output", "
   CHECK(!folder.has("out.json"));
   CHECK(folder.run("import circle.vm -o ./circle.vm").code == 2);
   CHECK(folder.read("circle.vm") == kCircle);
-  CHECK_THAT(folder.run("import circle.vm -o none/out.json").err, Contains("cannot write to the folder `none`"));
+  CHECK_THAT(folder.run("import circle.vm -o circle.vm/out.json").err, Contains("cannot write to the folder `circle.vm`"));
 }
 
 TEST_CASE("cli: prospero's pixels", "[cli]") {

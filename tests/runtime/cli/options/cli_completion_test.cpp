@@ -113,7 +113,7 @@ TEST_CASE("cli: the manual page has every verb, option and exit status, and grof
   const Folder folder;
   const std::string page = folder.run("man").out;
   CHECK_THAT(page, Contains(".TH FATHOM 1") && Contains(".SH NAME\nfathom \\- ") && Contains(".SH EXIT STATUS"));
-  CHECK_THAT(page, Contains(".SS \"fathom render scene.json \\-o out.png\"") &&
+  CHECK_THAT(page, Contains(".SS \"fathom render scene.fathom \\-o out.png\"") &&
                        Contains("\\fB\\-s\\fR, \\fB\\-\\-spp\\fR \\fIN\\fR\n"));
   std::istringstream lines(page);
   for (std::string line; std::getline(lines, line);) {

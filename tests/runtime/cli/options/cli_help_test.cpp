@@ -82,7 +82,7 @@ TEST_CASE("cli: an example that is too wide becomes lines that a shell joins", "
   const Folder folder;
   const std::string help = folder.run_script("COLUMNS=40; export COLUMNS; $fathom help render").out;
   CHECK_THAT(help,
-             Contains("  # and out-albedo.png, ...\n  fathom render scene.json -o \\\n      out.png -a -d -n\n"));
+             Contains("  # and out-albedo.png, ...\n  fathom render scene.fathom -o \\\n      out.png -a -d -n\n"));
 }
 
 TEST_CASE("cli: -V and --version print version, commit and instruction set", "[cli]") {

@@ -122,7 +122,7 @@ TEST_CASE("cli: help and version go to stdout and succeed", "[cli]") {
   for (const char* arguments : {"--help", "-h", "help"}) {
     const Result result = folder.run(arguments);
     CHECK(result.code == 0);
-    CHECK_THAT(result.out, Contains("fathom render scene.json") && Contains("Exit status") && Contains("65"));
+    CHECK_THAT(result.out, Contains("fathom render scene.fathom") && Contains("Exit status") && Contains("65"));
     CHECK(result.err == "");
   }
   for (const std::string verb : {"render", "check", "dump", "eval", "slice", "schema"}) {

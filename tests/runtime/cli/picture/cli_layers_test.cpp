@@ -91,10 +91,10 @@ TEST_CASE("cli layers: trouble with files is told from trouble with their conten
   CHECK(bad.code == 65);
   CHECK_THAT(bad.err, Contains("`bad.exr` is no exr picture that can be read"));
   CHECK(folder.run("tonemap ball.json -o a.png").code == 65);
-  for (const char* output : {"none/a.exr", "none/a.pfm"}) {
+  for (const char* output : {"ball.json/a.exr", "ball.json/a.pfm"}) {
     const Result result = folder.run(std::string("render ball.json -o ") + output);
     CHECK(result.code == 74);
-    CHECK_THAT(result.err, Contains("`none`") && !Contains("wrote"));
+    CHECK_THAT(result.err, Contains("`ball.json`") && !Contains("wrote"));
   }
   REQUIRE(folder.run("render ball.json -o light.pfm -s 1").code == 0);
   const Result no_layer = folder.run("tonemap light.pfm -o a.png --layer albedo");

@@ -86,7 +86,7 @@ TEST_CASE("cli: a cost map that cannot be written is refused before the first ra
   };
   expect("--cost-map cost", 2, "`cost` does not end in the name of a format for maps");
   expect("--cost-map cost.exr", 2, ".pfm for numbers");
-  expect("--cost-map missing/cost.png", 74, "`missing`");
+  expect("--cost-map ball.json/cost.png", 74, "`ball.json`");
   expect("-o a-evaluations.png --cost-map a.png", 2, "`a-evaluations.png` would be overwritten");
   expect("--quiet --profile", 2, "--quiet leaves out the numbers that --profile adds to");
   CHECK(folder.files() == 2);
