@@ -106,7 +106,7 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return apply_format(map_of(request), request.format, streams);
 }
 
-// Linear colours of an image file. A file with a single channel has equal red, green and blue.
+// Linear colours of an image file.
 struct Colors {
   int width = 0, height = 0;
   std::vector<float> rgb;
@@ -120,18 +120,18 @@ std::variant<Colors, ExitCode> read_colors(const std::string& path, const compil
     return fail(streams, read_error->missing ? kIo : kBadScene, read_error->problem);
   }
   const auto& image = std::get<runtime::FloatImage>(read);
-  Colors colors{image.area.width(), image.area.height(), {}};
-  const std::vector<float>* channels[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    constexpr std::string_view kNames[] = {"R", "G", "B"};
-    channels[c] = image.channel(kNames[c]);
-    if (channels[c] == nullptr) {
-      return fail(streams, kBadScene, fmt::format("`{}` has no channel `{}`", path, kNames[c]));
-    }
+  const auto light = runtime::layer_of(image, runtime::Layer::Beauty);
+  if (!light) {
+    return fail(streams, kBadScene, fmt::format("`{}` has no channels R, G and B", path),
+                {"its channels: " + runtime::channel_names(image)});
   }
-  colors.rgb.reserve(3 * channels[0]->size());
-  for (std::size_t i = 0; i < channels[0]->size(); ++i) {
-    for (const std::vector<float>* channel : channels) colors.rgb.push_back((*channel)[i]);
+  Colors colors{image.width, image.height, {}};
+  colors.rgb.reserve(3 * image.area.pixels());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec3 color = light->at(x, y);
+      colors.rgb.insert(colors.rgb.end(), {color.x, color.y, color.z});
+    }
   }
   return colors;
 }

@@ -76,14 +76,6 @@ runtime::ImageOptions options_of(const TonemapRequest& request, const runtime::F
   return options;
 }
 
-std::string channel_names(const runtime::FloatImage& image) {
-  std::string names;
-  for (const runtime::ChannelName& channel : image.channels) {
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name);
-  }
-  return names;
-}
-
 }  // namespace
 
 int run_tonemap(std::span<const std::string> args, const Streams& streams) {
@@ -102,7 +94,10 @@ int run_tonemap(std::span<const std::string> args, const Streams& streams) {
     return fail(streams, kBadScene,
                 fmt::format("`{}` has no layer `{}`, which is made of {}", request.input, layer.name,
                             fmt::join(layer.channels, ", ")),
-                {"its channels: " + channel_names(image)});
+                {"its channels: " + runtime::channel_names(image)});
+  }
+  if (const auto problem = runtime::not_finite(*values)) {
+    warn(streams, fmt::format("`{}` has {}: NaN is shown as black", request.input, *problem));
   }
   const Fill fill = [&](runtime::AtomicFile& file) {
     return runtime::write_layer(*values, options_of(request, image), request.output->format->format, file);

@@ -57,6 +57,15 @@ struct ImageShape {
   }
 };
 
+// Returns "A, R, layer.Z".
+inline std::string channel_names(const ImageShape& image) {
+  std::string names;
+  for (const ChannelName& channel : image.channels) {
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", channel.name);
+  }
+  return names;
+}
+
 // Returns the reason for not reading an image that takes `needed` bytes of memory.
 inline std::string too_much_memory(double needed, double allowed) {
   return fmt::format("it takes {:.15g} bytes of memory, and {:.15g} are allowed", needed, std::max(0.0, allowed));

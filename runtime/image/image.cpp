@@ -1,6 +1,9 @@
 #include "runtime/image/image.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -65,6 +68,27 @@ std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer) {
                        const std::size_t at = area.index(x, y);
                        return glm::vec3((*channels[0])[at], (*channels[1])[at], (*channels[2])[at]);
                      }};
+}
+
+std::optional<std::string> not_finite(const LayerValues& values) {
+  std::size_t undefined = 0, infinite = 0;
+  std::string first;
+  for (int y = values.area.y0; y < values.area.y1; ++y) {
+    for (int x = values.area.x0; x < values.area.x1; ++x) {
+      const glm::vec3 value = values.at(x, y);
+      const bool is_nan = std::isnan(value.x) || std::isnan(value.y) || std::isnan(value.z);
+      if (!is_nan && std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z)) continue;
+      if (first.empty()) first = fmt::format("the first in column {} of row {}", x, y);
+      ++(is_nan ? undefined : infinite);
+    }
+  }
+  if (first.empty()) return std::nullopt;
+  std::string text;
+  for (const auto& [count, what] : {std::pair{undefined, "NaN"}, {infinite, "infinity"}}) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} pixel{} with {}", text.empty() ? "" : " and ", count, count == 1 ? "" : "s", what);
+  }
+  return fmt::format("{}, {}", text, first);
 }
 
 DisplayImage::DisplayImage(LayerValues values, ToneMapping tone)

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -55,6 +56,9 @@ struct LayerValues {
   std::function<glm::vec3(int x, int y)> at;
 };
 std::optional<LayerValues> layer_of(const FloatImage& image, Layer layer);  // nullopt: a channel is missing
+
+// Returns how many pixels have NaN and how many infinity, and where the first is; nullopt if there are none.
+std::optional<std::string> not_finite(const LayerValues& values);
 
 // An image for display that is made row by row, while it is written. Refers to the object it was made from.
 class DisplayImage {

@@ -21,9 +21,9 @@ namespace fathom::runtime {
 [[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, const std::string& path);
 [[nodiscard]] std::optional<std::string> write_exr(const ImageRows& image, AtomicFile& file);  // commits it
 
-// Decodes the bytes of a file, with HALF and UINT as floats. Returns the image, or the problem with the bytes.
-// `memory`: maximum number of bytes, including `bytes`. Attributes of kinds that Attribute does not have are left
-// out.
+// Decodes the bytes of a file: its first flat part with colours, with HALF and UINT as floats, and colours in linear
+// sRGB (runtime/image/image_exr_color.h). Returns the image, or the problem with the bytes. `memory`: maximum number
+// of bytes, including `bytes`. Attributes of kinds that Attribute does not have are left out; `envmap` is a number.
 std::variant<FloatImage, std::string> decode_exr(const std::vector<std::uint8_t>& bytes, double memory = 0x1p36);
 
 }  // namespace fathom::runtime

@@ -16,6 +16,7 @@
 
 #include "compiler/scene/srgb.h"
 #include "runtime/image/image_exr.h"
+#include "runtime/image/image_hdr.h"
 #include "runtime/image/image_io.h"
 #include "runtime/image/image_jpeg.h"
 #include "runtime/image/image_png.h"
@@ -62,11 +63,9 @@ struct FreeStb {
 template <typename Sample>
 using StbPixels = std::unique_ptr<Sample, FreeStb>;
 
-// Feeds a file's bytes to stb. At the end of its input stb reads zeros, with which the run lengths of an HDR image
-// never end, and rows of other formats are invented. This source supplies `filler` instead, and sets ran_out.
+// Feeds a file's bytes to stb, which invents the rows after the end of its input. This source sets ran_out there.
 struct StbSource {
   const Bytes& bytes;
-  char filler = 0;
   std::size_t at = 0;
   bool ran_out = false;
 
@@ -77,7 +76,7 @@ struct StbSource {
     source.at += count;
     if (count > 0) return static_cast<int>(count);
     source.ran_out = true;
-    std::memset(data, source.filler, static_cast<std::size_t>(size));
+    std::memset(data, 0, static_cast<std::size_t>(size));
     return size;
   }
   static void skip(void* user, int count) {
@@ -99,26 +98,9 @@ struct StbSource {
 };
 constexpr stbi_io_callbacks kFromSource{StbSource::read, StbSource::skip, StbSource::has_ended};
 
-// Minimum number of bytes of a file with so many pixels.
-using LeastBytes = double (*)(const Bytes& bytes, double width, double height);
-
-// BMP, uncompressed: the header, whose length is its first number, holds the bits per pixel.
-double min_of_bmp(const Bytes& bytes, double width, double height) {
-  const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
-  const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
-  return width * height * std::max(1.0, bits) / 8;
-}
-
-// Radiance: a row begins with four bytes, and each of its four components stores a run of up to 127 in two bytes.
-// Very short and very long rows have no runs, nor have older files.
-double min_of_hdr(const Bytes&, double width, double height) {
-  const bool runs = width >= 8 && width < 32768;
-  return height * (runs ? 4 + 8 * std::ceil(width / 127) : 4 * width);
-}
-
-// Returns the reason why stb may not decode an image, judging by its header. stb's output takes `sample` bytes per
-// number, and the image made of it a float per number.
-std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, double memory, LeastBytes min_of) {
+// Returns the reason why stb may not decode a BMP, judging by its header. stb takes two bytes per number, and the
+// image made of them a float.
+std::optional<std::string> bmp_problem(const Bytes& bytes, double memory) {
   int width = 0, height = 0, components = 0;
   // Reading from memory, stb sees the end.
   if (!stbi_info_from_memory(bytes.data(), static_cast<int>(bytes.size()), &width, &height, &components)) {
@@ -127,10 +109,13 @@ std::optional<std::string> stb_problem(const Bytes& bytes, std::size_t sample, d
   }
   if (width < 1 || height < 1) return "it has no pixels";
   if (std::int64_t{width} * height > kMaxPixels) return "it is too large";
-  const double numbers = static_cast<double>(width) * height * std::max(3, components);
-  const double needed = static_cast<double>(bytes.size()) + numbers * (2 * static_cast<double>(sample) + 4);
+  const double pixels = static_cast<double>(width) * height, has = static_cast<double>(bytes.size());
+  const double needed = has + pixels * std::max(3, components) * 6;
   if (needed > memory) return too_much_memory(needed, memory);
-  const double least = min_of(bytes, width, height), has = static_cast<double>(bytes.size());
+  // The header, whose length is its first number, holds the bits per pixel of an uncompressed file.
+  const std::size_t at = bytes.size() > 14 && bytes[14] == 12 ? 24 : 28;
+  const double bits = at + 1 < bytes.size() ? bytes[at] + 256.0 * bytes[at + 1] : 1;
+  const double least = pixels * std::max(1.0, bits) / 8;
   if (least > has) return too_few_bytes(width, height, least, has);
   return std::nullopt;
 }
@@ -194,33 +179,12 @@ DecodeResult decode_display(const Bytes& bytes, double memory) {
   // before it reads the chunk, and invents the missing end of a JPEG.
   if (begins_as(ImageFormat::Png, bytes)) return decode_deep(bytes, memory);
   if (begins_as(ImageFormat::Jpeg, bytes)) return decode_lossy(bytes, memory);
-  if (auto problem = stb_problem(bytes, sizeof(stbi_uc), memory, min_of_bmp)) return std::move(*problem);
+  if (auto problem = bmp_problem(bytes, memory)) return std::move(*problem);
   int width = 0, height = 0, components = 0;
   StbSource source{bytes};
   const StbPixels<stbi_uc> pixels(stbi_load_from_callbacks(&kFromSource, &source, &width, &height, &components, 0));
   if (const char* problem = source.problem(pixels.get())) return problem;
   return from_signals(pixels.get(), width, height, components);
-}
-
-// stb would read the filler as more header lines without end. The header must therefore end with an empty line, and
-// the line of the size after it with a line break.
-bool ends_hdr_header(const Bytes& bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::size_t end = text.find("\n\n");
-  return end != text.npos && text.find('\n', end + 2) != text.npos;
-}
-
-DecodeResult decode_hdr(const Bytes& bytes, double memory) {
-  // stb would otherwise decode any other image to linear light.
-  if (!stbi_is_hdr_from_memory(bytes.data(), static_cast<int>(bytes.size()))) return "it has no Radiance header";
-  if (!ends_hdr_header(bytes)) return "its header does not end";
-  if (auto problem = stb_problem(bytes, sizeof(float), memory, min_of_hdr)) return std::move(*problem);
-  int width = 0, height = 0, components = 0;
-  StbSource source{bytes, '\xff'};  // longer than any run
-  const StbPixels<float> pixels(stbi_loadf_from_callbacks(&kFromSource, &source, &width, &height, &components, 3));
-  if (const char* problem = source.problem(pixels.get())) return problem;
-  const auto same = [](float value) { return value; };
-  return widened(pixels.get(), width, height, 3, same, same);
 }
 
 // Returns the next word of a header, which ends with one white character; empty at the end.
@@ -244,7 +208,8 @@ std::optional<T> to(std::string_view word) {
   return value;
 }
 
-// Source: see write_float_map().
+// Source: see write_float_map(). The size of the header's last number is a factor of all numbers, and its sign says
+// which byte is first.
 DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t at = 0;
@@ -252,7 +217,8 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const auto width = to<int>(next_word(text, at)), height = to<int>(next_word(text, at));
   const auto scale = to<double>(next_word(text, at));
   const bool grey = kind == "Pf";
-  if ((!grey && kind != "PF") || !width || !height || *width < 1 || *height < 1 || !scale || *scale == 0) {
+  if ((!grey && kind != "PF") || !width || !height || *width < 1 || *height < 1 || !scale || *scale == 0 ||
+      !std::isfinite(*scale)) {
     return "it has no header of a portable float map";
   }
   const int components = grey ? 1 : 3;
@@ -265,6 +231,7 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const double needed = static_cast<double>(bytes.size()) + sizeof(float) * (static_cast<double>(count) + 3 * pixels);
   if (needed > memory) return too_much_memory(needed, memory);
   std::vector<float> values(count);
+  const float unit = static_cast<float>(std::abs(*scale));
   const std::size_t row = values.size() / static_cast<std::size_t>(*height);
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::uint32_t bits = 0;
@@ -272,10 +239,43 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
       bits |= std::uint32_t{bytes[at + 4 * i + byte]} << (8 * (*scale < 0 ? byte : 3 - byte));
     }
     const std::size_t y = static_cast<std::size_t>(*height) - 1 - i / row;
-    values[y * row + i % row] = std::bit_cast<float>(bits);
+    values[y * row + i % row] = std::bit_cast<float>(bits) * unit;
   }
   const auto same = [](float value) { return value; };
   return widened(values.data(), *width, *height, components, same, same);
+}
+
+// Returns an image as large as the display window: black where there are no data, and without data outside.
+DecodeResult shown(FloatImage image, double memory) {
+  const PixelRect window{0, 0, image.width, image.height}, area = image.area;
+  if (area == window) return image;
+  // A crop of a large picture is a small file, and a few bytes of a header must not take all memory.
+  constexpr std::size_t kSmall = std::size_t{1} << 22, kMostTimes = 1024;
+  if (window.pixels() > std::max(kSmall, kMostTimes * area.pixels())) {
+    return fmt::format("its display window of {} by {} pixels is more than {} times its data window of {} by {}",
+                       window.width(), window.height(), kMostTimes, area.width(), area.height());
+  }
+  const double count = static_cast<double>(image.channels.size());
+  const double needed =
+      sizeof(float) * (count * static_cast<double>(area.pixels()) + count * static_cast<double>(window.pixels()));
+  if (needed > memory) return too_much_memory(needed, memory);
+  const int left = std::max(0, area.x0), right = std::min(window.x1, area.x1);
+  for (std::vector<float>& values : image.values) {
+    std::vector<float> all(window.pixels());
+    for (int y = std::max(0, area.y0); y < std::min(window.y1, area.y1) && left < right; ++y) {
+      const auto from = values.begin() + static_cast<std::ptrdiff_t>(area.index(left, y));
+      std::copy(from, from + (right - left), all.begin() + static_cast<std::ptrdiff_t>(window.index(left, y)));
+    }
+    values = std::move(all);
+  }
+  image.area = window;
+  return image;
+}
+
+DecodeResult decode_shown_exr(const Bytes& bytes, double memory) {
+  DecodeResult read = decode_exr(bytes, memory);
+  FloatImage* const image = std::get_if<FloatImage>(&read);
+  return image == nullptr ? std::move(read) : shown(std::move(*image), memory - static_cast<double>(bytes.size()));
 }
 
 // Returns false on failure, with errno set. A file without the signature of its format is read no further than its
@@ -299,7 +299,7 @@ DecodeResult decode(ImageFormat format, const Bytes& bytes, double memory) {
   if (static_cast<double>(bytes.size()) > memory) return "it is longer than the memory that is allowed";
   switch (format) {
     case ImageFormat::Exr:
-      return decode_exr(bytes, memory);
+      return decode_shown_exr(bytes, memory);
     case ImageFormat::Pfm:
       return decode_pfm(bytes, memory);
     case ImageFormat::Hdr:

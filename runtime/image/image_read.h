@@ -1,8 +1,9 @@
 // Reads images from files as floats. The file name's ending, in any case, selects the format. All formats that
 // runtime/image/image_io.h writes can be read.
 //
-// OpenEXR files give all their channels as they are. Other files give R, G, B and, with transparency, A, y downwards.
-// The samples of PNG, JPEG and BMP are taken for sRGB signals and decoded to linear light, which PFM and HDR hold.
+// OpenEXR files give all their channels, colours in linear sRGB, over the display window: 0 where the file has no
+// data. Other files give R, G, B and, with transparency, A, y downwards. The samples of PNG, JPEG and BMP are taken
+// for sRGB signals and decoded to linear light, which PFM and HDR hold.
 // Tested by: tests/runtime/image/image_read_test.cpp
 #pragma once
 

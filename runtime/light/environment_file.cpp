@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "runtime/image/image.h"
 #include "runtime/image/image_read.h"
 
 namespace fathom::runtime {
@@ -23,22 +25,35 @@ std::variant<EnvironmentImage, ImageReadError> read_environment(const std::strin
   const auto read = read_image(path, limits);
   if (const auto* unread = std::get_if<ImageReadError>(&read)) return *unread;
   const FloatImage& image = std::get<FloatImage>(read);
-  // An image of luminance alone is grey.
-  const std::vector<float>* grey = image.channel("Y");
-  const std::vector<float>* channels[] = {image.channel("R"), image.channel("G"), image.channel("B")};
-  for (const std::vector<float>*& channel : channels) {
-    if (channel == nullptr) channel = grey;
-    if (channel == nullptr) return ImageReadError{fmt::format("`{}` has neither channels R, G and B nor Y", path)};
+  if (const auto kind = image.attributes.find("envmap"); kind != image.attributes.end()) {
+    constexpr int kCube = 1;
+    if (kind->second == Attribute(kCube)) {
+      return ImageReadError{
+          fmt::format("`{}` is a cube of six faces, and a background is a map of longitude and latitude: `exrenvmap "
+                      "-l` converts it",
+                      path)};
+    }
+  }
+  const std::optional<LayerValues> light = layer_of(image, Layer::Beauty);
+  if (!light) {
+    return ImageReadError{
+        fmt::format("`{}` has no channels R, G and B and no Y; its channels: {}", path, channel_names(image))};
   }
   const double pixels = static_cast<double>(image.area.pixels());
   const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + sizeof(glm::vec3));
   if (needed > limits.memory) {
     return ImageReadError{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
   }
-  EnvironmentImage result{image.area.width(), image.area.height(), {}};
+  EnvironmentImage result{image.width, image.height, {}, {}};
   result.pixels.reserve(image.area.pixels());
-  for (std::size_t i = 0; i < channels[0]->size(); ++i) {
-    result.pixels.emplace_back(usable((*channels[0])[i]), usable((*channels[1])[i]), usable((*channels[2])[i]));
+  for (int y = 0; y < result.height; ++y) {
+    for (int x = 0; x < result.width; ++x) {
+      const glm::vec3 pixel = light->at(x, y);
+      result.pixels.emplace_back(usable(pixel.x), usable(pixel.y), usable(pixel.z));
+    }
+  }
+  if (const auto problem = not_finite(*light)) {
+    result.warning = fmt::format("`{}` has {}: NaN is read as 0, and infinity as 65504", path, *problem);
   }
   return result;
 }

@@ -14,6 +14,7 @@ namespace fathom::runtime {
 struct EnvironmentImage {
   int width = 0, height = 0;
   std::vector<glm::vec3> pixels;  // from the top row; finite and not negative
+  std::string warning = {};       // names pixels of the file that are no light; empty when there are none
 };
 
 // Returns the image, or the reason why it cannot be read. NaN and negative values become 0, and infinity becomes the

@@ -28,6 +28,9 @@ std::optional<ExitCode> read_background(const compiler::Background& background, 
       return fail_about(arguments, read_error->missing ? kIo : kBadScene,
                         "the scene's background: " + read_error->problem, {}, streams);
     }
+    if (const auto& read = std::get<runtime::EnvironmentImage>(image); !read.warning.empty()) {
+      warn(streams, "the scene's background: " + read.warning);
+    }
     cache.background_file = file;
     cache.background =
         std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));

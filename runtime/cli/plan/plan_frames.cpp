@@ -22,6 +22,9 @@ std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running
     auto image = runtime::read_environment(background, read_limits(request_.scene.limits));
     if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image))
       return fail(streams_, kIo, read_error->problem);
+    if (const auto& read = std::get<runtime::EnvironmentImage>(image); !read.warning.empty()) {
+      warn(streams_, read.warning);
+    }
     cache_.background_file = plan_.background_name;
     cache_.background =
         std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));

@@ -2,6 +2,7 @@
 // attributes.
 
 #include "runtime/film/film_channels.h"
+#include "runtime/image/image_exr.h"
 #include "runtime/image/image_read.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
@@ -138,7 +139,8 @@ TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit", "
     INFO(crop);
     REQUIRE(folder.run(std::string("render ball.json -o c.exr -o c.png -o c.pfm -a -n --threads 1 --crop ") + crop)
                 .code == 0);
-    const FloatImage part = read(folder, "c.exr");
+    const std::string file = folder.read("c.exr");
+    const FloatImage part = std::get<FloatImage>(fathom::runtime::decode_exr({file.begin(), file.end()}));
     CHECK(part.width == 32);
     CHECK(part.height == 16);
     CHECK(part.area == fathom::runtime::PixelRect{9, 3, 25, 14});
@@ -150,6 +152,29 @@ TEST_CASE("cli layers: the file of a crop is the picture's part, bit for bit", "
       CHECK(equal_there(read(folder, std::string("c") + name), read(folder, std::string("w") + name), 9, 3));
     }
   }
+}
+
+// The data of other programs' files are elsewhere than in their display windows, too: they were shown stretched, and
+// were not comparable.
+TEST_CASE("cli layers: the data of an exr are shown in their place", "[cli]") {
+  const Folder folder;
+  REQUIRE(folder.run("render ball.json -o w.exr -s 1").code == 0);
+  REQUIRE(folder.run("render ball.json -o c.exr -s 1 --crop 9,3,25,14").code == 0);
+  REQUIRE(folder.run("render ball.json -o d.exr -s 1 --crop 8,3,24,14").code == 0);
+  REQUIRE(folder.run("tonemap c.exr -o c.png").code == 0);
+  REQUIRE(folder.run("tonemap w.exr -o w.png").code == 0);
+  const FloatImage crop = read(folder, "c.png"), whole = read(folder, "w.png");
+  CHECK(crop.area == fathom::runtime::PixelRect{0, 0, 32, 16});
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const bool has = x >= 9 && x < 25 && y >= 3 && y < 14;
+      const std::size_t at = crop.area.index(x, y);
+      for (std::size_t c = 0; c < 3; ++c) CHECK(crop.values[c][at] == (has ? whole.values[c][at] : 0));
+    }
+  }
+  CHECK(folder.run("diff c.exr w.exr --tol 0").code == 1);
+  CHECK(folder.run("diff c.exr c.png --tol 1e-3").code == 0);
+  CHECK(folder.run("diff c.exr d.exr --tol 0").code == 1);
 }
 
 TEST_CASE("cli layers: two runs write the same file, and --profile adds the time", "[cli]") {
