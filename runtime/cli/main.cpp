@@ -2,11 +2,13 @@
 // Tested by: tests/runtime/cli/cli_test.cpp
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +46,18 @@ void set_handlers(std::string_view verb) {
   std::signal(SIGABRT, [](int) { std::_Exit(kInternal); });  // a failed CHECK aborts after its message
 }
 
+// Overwrites the argument of `view --token`, because any user of the machine sees the arguments of programs.
+void hide_token(std::span<char* const> args) {
+  constexpr std::string_view kOption = "--token";
+  if (args.empty() || std::string_view(args.front()) != "view") return;
+  for (std::size_t i = 1; i < args.size(); ++i) {
+    const std::string_view before = args[i - 1], word = args[i];
+    if (word.starts_with("--token="))
+      std::fill_n(args[i] + kOption.size() + 1, word.size() - kOption.size() - 1, '*');
+    if (before == kOption) std::fill_n(args[i], word.size(), '*');
+  }
+}
+
 Streams standard_streams() {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const char* no_color = std::getenv("NO_COLOR");
@@ -62,6 +76,7 @@ Streams standard_streams() {
 
 int main(int argc, char** argv) {
   const std::vector<std::string> args(argv + 1, argv + argc);
+  fathom::cli::hide_token({argv + 1, argv + argc});
   fathom::cli::set_handlers(args.empty() ? "" : args.front());
   return fathom::cli::run(args, fathom::cli::standard_streams());
 }

@@ -5,12 +5,14 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <optional>
 #include <ostream>
 #include <thread>
 
 #include "runtime/cli/picture/interruption.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/cli/view/private_folder.h"
 #include "runtime/cli/view/request_guard.h"
 #include "runtime/cli/view/view_server.h"
 
@@ -56,10 +58,15 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-// Opens the address in the desktop's browser, if there is a desktop. The program's output goes nowhere.
-void open_browser(const std::string& address) {
+// Opens the address in the desktop's browser, if there is a desktop. The browser gets the name of a file that leads
+// to the address, because any user of the machine sees the arguments of programs. Its output goes nowhere.
+void open_browser(const std::string& address, const PrivateFolder& folder) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
-  std::string program = "xdg-open", argument = address;
+  std::string program = "xdg-open", argument = folder.file("open.html");
+  std::ofstream(argument) << fmt::format(
+      "<!doctype html><title>fathom view</title><meta http-equiv=\"refresh\" content=\"0;url={0}\">"
+      "<a href=\"{0}\">fathom view</a>\n",
+      address);
   char* const arguments[] = {program.data(), argument.data(), nullptr};
   posix_spawn_file_actions_t quiet;
   posix_spawn_file_actions_init(&quiet);
@@ -82,7 +89,12 @@ int run_view(std::span<const std::string> args, const Streams& streams) {
   render.scene = request.scene;
   render.quiet = true;
   ViewSession session(render, request.threads.value_or(0));
-  ViewServer server(session, request.port, request.token.value_or(random_token()));
+  const PrivateFolder folder;
+  if (folder.path().empty()) {
+    return fail(streams, kIo, "no private folder can be made",
+                {"set XDG_RUNTIME_DIR or TMPDIR to a folder of yours"});
+  }
+  ViewServer server(session, request.port, request.token.value_or(random_token()), folder);
   const auto address = server.address();
   if (!address) {
     return fail(streams, kIo, fmt::format("port {} is in use", request.port),
@@ -91,7 +103,7 @@ int run_view(std::span<const std::string> args, const Streams& streams) {
   streams.err << session.state().messages;
   streams.out << *address << std::endl;
   say(streams, "the page is at this address; Ctrl-C ends");
-  if (!request.no_open) open_browser(*address);
+  if (!request.no_open) open_browser(*address, folder);
   std::thread serving([&] { server.run(); });
   while (!interruption.stop()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   server.stop();

@@ -32,7 +32,9 @@ std::optional<Refusal> RequestGuard::refuse(const RequestFacts& request) const {
       (!request.origin.starts_with(kScheme) || !is_own_host(request.origin.substr(kScheme.size())))) {
     return Refusal{403, "the request comes from another site"};
   }
-  if (!request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none") {
+  const bool opens_page = request.method == "GET" && request.path == root_ && request.fetch_mode == "navigate";
+  if (!opens_page && !request.fetch_site.empty() && request.fetch_site != "same-origin" &&
+      request.fetch_site != "none") {
     return Refusal{403, "the request comes from another site"};
   }
   // A wrong token gets the same answer as a missing page.

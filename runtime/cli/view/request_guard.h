@@ -3,7 +3,8 @@
 // The server listens on the loopback interface only, where any program of the machine and any page in its browser can
 // reach it. The path therefore begins with a secret token, `Host` must be the server's (DNS rebinding: Jackson et
 // al., "Protecting Browsers from DNS Rebinding Attacks", 2007), and `Origin` and `Sec-Fetch-Site` must not name
-// another site. Tested by: tests/runtime/cli/view/cli_view_attacks_test.cpp
+// another site. The page itself may be opened from elsewhere, as from the file that open_browser() writes. Tested by:
+// tests/runtime/cli/view/cli_view_attacks_test.cpp
 #pragma once
 
 #include <optional>
@@ -14,7 +15,7 @@ namespace fathom::cli {
 
 // The parts of a request that decide; empty for a missing header.
 struct RequestFacts {
-  std::string method, path, host, origin, fetch_site, content_type;
+  std::string method, path, host, origin, fetch_site, fetch_mode, content_type;
 };
 
 struct Refusal {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <thread>
 #include <utility>
 
 #include "runtime/cli/view/page_files.h"
+#include "runtime/cli/view/request_gate.h"
 #include "runtime/cli/view/request_guard.h"
 
 namespace fathom::cli {
@@ -48,7 +50,8 @@ RequestFacts facts_of(const httplib::Request& request) {
   const auto only = [&](const char* name) {
     return request.get_header_value_count(name) > 1 ? "?" : request.get_header_value(name);
   };
-  return {request.method, request.path, only("Host"), only("Origin"), only("Sec-Fetch-Site"), only("Content-Type")};
+  return {request.method,         request.path,           only("Host"),        only("Origin"),
+          only("Sec-Fetch-Site"), only("Sec-Fetch-Mode"), only("Content-Type")};
 }
 
 void refuse(httplib::Response& response, const Refusal& refusal) {
@@ -77,20 +80,19 @@ void reply(httplib::Response& response, Answer answer) {
 
 struct ViewServer::Server {
   ViewSession& session;
+  RequestGate gate;
+  const std::string socket;  // where the gate passes requests on
   httplib::Server http;
   std::optional<RequestGuard> guard;  // none if the port is not free
   std::atomic<int> streams = 0;
 
-  Server(ViewSession& viewed, int port, const std::string& token) : session(viewed) {
-    // Without SO_REUSEPORT, which is the library's default, another program cannot listen on the same port.
-    http.set_socket_options([](socket_t socket) {
-      const int yes = 1;
-      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    });
-    const bool is_bound = port == 0 || http.bind_to_port("127.0.0.1", port);
-    const int bound = port == 0 ? http.bind_to_any_port("127.0.0.1") : port;
-    if (!is_bound || bound <= 0) return;
-    guard.emplace(bound, token);
+  Server(ViewSession& viewed, int port, const std::string& token, const PrivateFolder& folder)
+      : session(viewed), gate(port), socket(folder.file("http")) {
+    http.set_address_family(AF_UNIX);
+    http.set_socket_options([](socket_t) {});
+    constexpr int kAnyPort = 80;  // a Unix socket has none, and the library wants a number
+    if (gate.port() == 0 || !http.bind_to_port(socket, kAnyPort)) return;
+    guard.emplace(gate.port(), token);
     set_limits();
     add_routes();
   }
@@ -101,7 +103,6 @@ struct ViewServer::Server {
     http.set_read_timeout(kPatience);
     http.set_write_timeout(kPatience);
     http.set_keep_alive_timeout(kPatience);
-    http.set_tcp_nodelay(true);
     httplib::Headers headers;
     for (const auto& [name, value] : kHeaders) headers.emplace(name, value);
     http.set_default_headers(headers);
@@ -161,8 +162,8 @@ struct ViewServer::Server {
   }
 };
 
-ViewServer::ViewServer(ViewSession& session, int port, std::string token)
-    : server_(std::make_unique<Server>(session, port, token)) {}
+ViewServer::ViewServer(ViewSession& session, int port, const std::string& token, const PrivateFolder& folder)
+    : server_(std::make_unique<Server>(session, port, token, folder)) {}
 
 ViewServer::~ViewServer() = default;
 
@@ -170,11 +171,16 @@ std::optional<std::string> ViewServer::address() const {
   return server_->guard ? std::optional(server_->guard->address()) : std::nullopt;
 }
 
-void ViewServer::run() { server_->http.listen_after_bind(); }
+void ViewServer::run() {
+  std::thread answering([this] { server_->http.listen_after_bind(); });
+  server_->gate.run(server_->guard->root(), server_->socket);
+  server_->http.stop();
+  answering.join();
+}
 
 void ViewServer::stop() {
   server_->session.stop();
-  server_->http.stop();
+  server_->gate.stop();
 }
 
 }  // namespace fathom::cli

@@ -1,5 +1,6 @@
 // Attacks on the server of `fathom view`: by other sites in the user's browser, and by programs of the machine that
 // do not know the token. None gets anything of the scene, and the server answers its own page afterwards.
+#include <filesystem>
 #include <string>
 
 #include "tests/runtime/cli/view/view_client.h"
@@ -158,6 +159,11 @@ TEST_CASE("view: slow clients and many streams do not hold the server", "[cli][v
     CHECK(ViewClient::receive(socket).status != 200);
     close(socket);
   }
+  CHECK(server.client().end() == 0);
+}
+
+TEST_CASE("view: streams have a limit", "[cli][view]") {
+  Attacked server;
   std::vector<int> streams;
   for (int i = 0; i < 6; ++i) {
     streams.push_back(server.client().open());
@@ -169,6 +175,71 @@ TEST_CASE("view: slow clients and many streams do not hold the server", "[cli][v
   for (const int socket : streams) close(socket);
   CHECK(server.client().get("scene").status == 200);
   CHECK(server.client().end() == 0);
+}
+
+// The library keeps every line of a head that it has read, however many there are.
+TEST_CASE("view: strangers cannot fill the memory", "[cli][view]") {
+  Attacked server;
+  const int before = server.client().max_memory();
+  const std::string line = "X-a: " + std::string(8000, 'a') + "\r\n";
+  std::string flood;
+  while (flood.size() < (64 << 20)) flood += line;
+  const std::string without_end(64 << 20, 'a'), wrong = "GET /a HTTP/1.1\r\nHost: x\r\n";
+  for (const std::string& bytes : {wrong + flood, "GET /" + without_end, "GET /a" + without_end + " HTTP/1.1\r\n"}) {
+    server.refused(bytes, {0, 400, 404});
+  }
+  // Not even with the token.
+  server.refused(server.scene(server.own() + flood), {0, 431});
+  CHECK(server.client().max_memory() - before < 30 << 10);
+}
+
+// Each sends a byte now and then, more connections than there are threads and places for them.
+TEST_CASE("view: strangers cannot hold the threads", "[cli][view]") {
+  Attacked server;
+  std::vector<int> slow;
+  for (int i = 0; i < 300; ++i) slow.push_back(server.client().open());
+  for (int round = 0; round < 5; ++round) {
+    for (const int socket : slow) ViewClient::send(socket, round == 0 ? "GET /x HTTP/1.1" : "a");
+    CHECK(server.client().get("scene").status == 200);
+  }
+  // All of them end, though they go on.
+  for (const int socket : slow) {
+    char byte = 0;
+    while (recv(socket, &byte, 1, MSG_DONTWAIT) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      ViewClient::send(socket, "a");
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    close(socket);
+  }
+  CHECK(server.client().get("scene").status == 200);
+}
+
+// Any user of the machine sees the arguments of all programs.
+TEST_CASE("view: the token is in no arguments", "[cli][view]") {
+  const Folder folder;
+  folder.write("scene.fathom", kSecret);
+  folder.write("xdg-open",
+               "#!/bin/sh\ncp \"$1\" page.new\nstat -c %a \"$(dirname \"$1\")\" > mode\n"
+               "echo \"$1\" > name\nmv page.new page\n");
+  std::filesystem::permissions(folder.path() / "xdg-open", std::filesystem::perms::owner_all);
+  const std::string token = "abcdefghijklmnop1234";
+  ViewClient client(folder, "scene.fathom", {"--token", token},
+                    {"DISPLAY=:0", "PATH=" + folder.path().string() + ":" + std::getenv("PATH")});
+  CHECK(client.root() == "/" + token + "/");
+  CHECK(contains(client.process("cmdline"), "--token"));
+  CHECK_FALSE(contains(client.process("cmdline"), token));
+  while (!std::filesystem::exists(folder.path() / "page")) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  CHECK(contains(folder.read("page"), "url=http://" + client.host() + client.root() + "\""));
+  CHECK_FALSE(contains(folder.read("name"), token));
+  CHECK(folder.read("mode") == "700\n");
+  // A browser says that this page comes from elsewhere, and only a page may.
+  const std::string elsewhere = client.own() + "Sec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: navigate\r\n\r\n";
+  CHECK(client.exchange("GET " + client.root() + " HTTP/1.1\r\n" + elsewhere).status == 200);
+  CHECK(client.exchange("GET " + client.root() + "scene HTTP/1.1\r\n" + elsewhere).status == 403);
+  const std::string file = folder.read("name").substr(0, folder.read("name").size() - 1);
+  CHECK(std::filesystem::exists(file));
+  CHECK(client.end() == 0);
+  CHECK_FALSE(std::filesystem::exists(file));
 }
 
 TEST_CASE("view: names of a scene stay text", "[cli][view]") {

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
@@ -26,12 +28,14 @@ struct Reply {
 
 class ViewClient {
  public:
-  ViewClient(const Folder& folder, const std::string& scene, const std::vector<std::string>& more = {}) {
+  // `desktop`: variables of the environment, NAME=VALUE, with which the program opens a browser.
+  ViewClient(const Folder& folder, const std::string& scene, const std::vector<std::string>& more = {},
+             const std::vector<std::string>& desktop = {}) {
     int ends[2];
     REQUIRE(pipe(ends) == 0);
     child_ = fork();
     REQUIRE(child_ >= 0);
-    if (child_ == 0) exec(folder, scene, more, ends);
+    if (child_ == 0) exec(folder, scene, more, desktop, ends);
     close(ends[1]);
     std::string address;
     char c = 0;
@@ -49,6 +53,18 @@ class ViewClient {
   ViewClient& operator=(const ViewClient&) = delete;
 
   int port() const { return port_; }
+  // Returns a file of the server's process, as "cmdline".
+  std::string process(const std::string& name) const {
+    std::ifstream file("/proc/" + std::to_string(child_) + "/" + name);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  // Returns the largest memory that the server has had, in KiB.
+  int max_memory() const {
+    const std::string status = process("status");
+    const std::size_t at = status.find("VmHWM:");
+    REQUIRE(at != std::string::npos);
+    return std::stoi(status.substr(at + 6));
+  }
   const std::string& root() const { return root_; }  // "/TOKEN/"
   std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
 
@@ -128,11 +144,13 @@ class ViewClient {
 
  private:
   [[noreturn]] static void exec(const Folder& folder, const std::string& scene, const std::vector<std::string>& more,
-                                const int (&ends)[2]) {
+                                std::vector<std::string> desktop, const int (&ends)[2]) {
     dup2(ends[1], STDOUT_FILENO);
     close(ends[0]), close(ends[1]);
     std::string program = program_path();
-    std::vector<std::string> words = {program, "view", scene, "--no-open", "--threads", "2", "-q"};
+    std::vector<std::string> words = {program, "view", scene, "--threads", "2", "-q"};
+    if (desktop.empty()) words.push_back("--no-open");
+    for (std::string& variable : desktop) putenv(variable.data());
     words.insert(words.end(), more.begin(), more.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
