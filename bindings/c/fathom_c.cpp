@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fathom/fathom.hpp>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,18 @@ namespace {
 
 using fathom::Error;
 
-Error null_argument() { return fathom::library::bad_argument("a pointer is NULL"); }
+struct Pointer {
+  const char* name;
+  const void* value;
+};
+
+// Returns the error that the first of these arguments is NULL, which its function needs, or none.
+Error check_given(std::initializer_list<Pointer> pointers) {
+  for (const Pointer& each : pointers) {
+    if (each.value == nullptr) return fathom::library::bad_argument(std::string(each.name) + " is NULL");
+  }
+  return {};
+}
 
 // Copies the error to the caller and returns its kind. A cut message ends at a whole character.
 int report(const Error& error, fathom_error* out) {
@@ -51,17 +63,21 @@ int call(fathom_error* error, Work&& work) noexcept {
   return report(fathom::library::guard(std::forward<Work>(work)), error);
 }
 
-fathom::CompileOptions to_options(const fathom_compile_options* options) {
-  fathom::CompileOptions out;
-  if (options == nullptr) return out;
+Error to_options(const fathom_compile_options* options, fathom::CompileOptions& out) {
+  if (options == nullptr) return {};
   if (options->name != nullptr) out.name = options->name;
   if (options->folder != nullptr) out.folder = options->folder;
   if (options->import_root != nullptr) out.import_root = options->import_root;
   out.memory = options->memory;
+  if (options->parameter_count > 0) {
+    if (Error error = check_given({{"options.parameters", options->parameters}})) return error;
+  }
   for (std::size_t i = 0; i < options->parameter_count; ++i) {
+    const std::string name = "options.parameters[" + std::to_string(i) + "].name";
+    if (Error error = check_given({{name.c_str(), options->parameters[i].name}})) return error;
     out.parameters.emplace_back(options->parameters[i].name, options->parameters[i].value);
   }
-  return out;
+  return {};
 }
 
 Error hand_over(fathom::Compiled compiled, fathom_scene** scene, fathom_diagnostics** diagnostics) {
@@ -87,7 +103,10 @@ template <class T>
 int evaluate(const fathom_scene* scene, const T* points, std::ptrdiff_t stride, std::size_t count, T* distance,
              T* gradient, std::uint32_t* object, fathom_error* error) {
   return call(error, [&]() -> Error {
-    if (scene == nullptr || (points == nullptr && count > 0)) return null_argument();
+    if (Error problem = check_given({{"scene", scene}})) return problem;
+    if (count > 0) {
+      if (Error problem = check_given({{"points", points}})) return problem;
+    }
     fathom::Values<T> out;
     if (distance != nullptr) out.distance = {distance, count};
     if (gradient != nullptr) out.gradient = {reinterpret_cast<fathom::Vec3<T>*>(gradient), count};
@@ -146,8 +165,10 @@ int fathom_compile(const char* text, size_t length, const fathom_compile_options
   if (diagnostics != nullptr) *diagnostics = nullptr;
   if (scene != nullptr) *scene = nullptr;
   return call(error, [&]() -> Error {
-    if (text == nullptr || scene == nullptr) return null_argument();
-    return hand_over(fathom::compile({text, length}, to_options(options)), scene, diagnostics);
+    if (Error problem = check_given({{"text", text}, {"scene", scene}})) return problem;
+    fathom::CompileOptions how;
+    if (Error problem = to_options(options, how)) return problem;
+    return hand_over(fathom::compile({text, length}, how), scene, diagnostics);
   });
 }
 
@@ -156,8 +177,10 @@ int fathom_load(const char* path, const fathom_compile_options* options, fathom_
   if (diagnostics != nullptr) *diagnostics = nullptr;
   if (scene != nullptr) *scene = nullptr;
   return call(error, [&]() -> Error {
-    if (path == nullptr || scene == nullptr) return null_argument();
-    return hand_over(fathom::load(path, to_options(options)), scene, diagnostics);
+    if (Error problem = check_given({{"path", path}, {"scene", scene}})) return problem;
+    fathom::CompileOptions how;
+    if (Error problem = to_options(options, how)) return problem;
+    return hand_over(fathom::load(path, how), scene, diagnostics);
   });
 }
 
@@ -185,8 +208,8 @@ void fathom_diagnostics_free(fathom_diagnostics* diagnostics) { delete diagnosti
 
 void fathom_bounds(const fathom_scene* scene, double lo[3], double hi[3]) {
   const fathom::Box box = scene == nullptr ? fathom::Scene().bounds() : scene->scene.bounds();
-  copy(box.lo, lo);
-  copy(box.hi, hi);
+  if (lo != nullptr) copy(box.lo, lo);
+  if (hi != nullptr) copy(box.hi, hi);
 }
 
 double fathom_lipschitz(const fathom_scene* scene, int* certified) {
@@ -202,12 +225,12 @@ const char* fathom_object_name(const fathom_scene* scene, size_t object) {
 
 int fathom_distance_f32(const fathom_scene* scene, const float* points, ptrdiff_t stride, size_t count,
                         float* distance, fathom_error* error) {
-  if (distance == nullptr && count > 0) return report(null_argument(), error);
+  if (distance == nullptr && count > 0) return report(check_given({{"distance", distance}}), error);
   return evaluate<float>(scene, points, stride, count, distance, nullptr, nullptr, error);
 }
 int fathom_distance_f64(const fathom_scene* scene, const double* points, ptrdiff_t stride, size_t count,
                         double* distance, fathom_error* error) {
-  if (distance == nullptr && count > 0) return report(null_argument(), error);
+  if (distance == nullptr && count > 0) return report(check_given({{"distance", distance}}), error);
   return evaluate<double>(scene, points, stride, count, distance, nullptr, nullptr, error);
 }
 int fathom_evaluate_f32(const fathom_scene* scene, const float* points, ptrdiff_t stride, size_t count,
@@ -222,7 +245,7 @@ int fathom_evaluate_f64(const fathom_scene* scene, const double* points, ptrdiff
 int fathom_range(const fathom_scene* scene, const double lo[3], const double hi[3], double range[2],
                  fathom_error* error) {
   return call(error, [&]() -> Error {
-    if (scene == nullptr || lo == nullptr || hi == nullptr || range == nullptr) return null_argument();
+    if (Error problem = check_given({{"scene", scene}, {"lo", lo}, {"hi", hi}, {"range", range}})) return problem;
     const fathom::Box box{{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
     fathom::Interval interval{0, 0};
     Error problem = scene->scene.range({&box, 1}, {&interval, 1});
@@ -235,7 +258,11 @@ int fathom_range(const fathom_scene* scene, const double lo[3], const double hi[
 int fathom_march(const fathom_scene* scene, const double* origins, const double* directions, size_t count,
                  fathom_hit* hits, fathom_error* error) {
   return call(error, [&]() -> Error {
-    if (scene == nullptr || (count > 0 && (!origins || !directions || !hits))) return null_argument();
+    if (Error problem = check_given({{"scene", scene}})) return problem;
+    if (count > 0) {
+      if (Error problem = check_given({{"origins", origins}, {"directions", directions}, {"hits", hits}}))
+        return problem;
+    }
     std::vector<fathom::Ray> rays(count);
     std::vector<fathom::Hit> results(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -257,7 +284,7 @@ int fathom_render(const fathom_scene* scene, const fathom_render_options* option
                   fathom_error* error) {
   if (image != nullptr) *image = nullptr;
   return call(error, [&]() -> Error {
-    if (scene == nullptr || image == nullptr) return null_argument();
+    if (Error problem = check_given({{"scene", scene}, {"image", image}})) return problem;
     std::stop_source stop;
     fathom::Rendered rendered = scene->scene.render(to_options(options, stop));
     if (!rendered.error) *image = new fathom_image{std::move(rendered.image)};
@@ -270,7 +297,7 @@ int fathom_image_height(const fathom_image* image) { return image == nullptr ? 0
 int fathom_image_complete(const fathom_image* image) { return image != nullptr && image->image.complete(); }
 
 int fathom_image_read(const fathom_image* image, fathom_layer layer, float* out, fathom_error* error) {
-  if (image == nullptr || out == nullptr) return report(null_argument(), error);
+  if (Error problem = check_given({{"image", image}, {"out", out}})) return report(problem, error);
   if (layer < FATHOM_RADIANCE || layer > FATHOM_POSITION) {
     return report(fathom::library::bad_argument("there is no such layer"), error);
   }
@@ -278,22 +305,22 @@ int fathom_image_read(const fathom_image* image, fathom_layer layer, float* out,
 }
 
 int fathom_image_display(const fathom_image* image, uint8_t* out, fathom_error* error) {
-  if (image == nullptr || out == nullptr) return report(null_argument(), error);
+  if (Error problem = check_given({{"image", image}, {"out", out}})) return report(problem, error);
   return report(image->image.read_display({out, 3 * pixels_of(image)}), error);
 }
 
 int fathom_image_depth(const fathom_image* image, float* out, fathom_error* error) {
-  if (image == nullptr || out == nullptr) return report(null_argument(), error);
+  if (Error problem = check_given({{"image", image}, {"out", out}})) return report(problem, error);
   return report(image->image.read_depth({out, pixels_of(image)}), error);
 }
 
 int fathom_image_objects(const fathom_image* image, uint32_t* out, fathom_error* error) {
-  if (image == nullptr || out == nullptr) return report(null_argument(), error);
+  if (Error problem = check_given({{"image", image}, {"out", out}})) return report(problem, error);
   return report(image->image.read_objects({out, pixels_of(image)}), error);
 }
 
 int fathom_image_write(const fathom_image* image, const char* path, fathom_error* error) {
-  if (image == nullptr || path == nullptr) return report(null_argument(), error);
+  if (Error problem = check_given({{"image", image}, {"path", path}})) return report(problem, error);
   return call(error, [&] { return image->image.write(path); });
 }
 
@@ -303,7 +330,7 @@ int fathom_make_mesh(const fathom_scene* scene, const fathom_mesh_options* optio
                      fathom_error* error) {
   if (mesh != nullptr) *mesh = nullptr;
   return call(error, [&]() -> Error {
-    if (scene == nullptr || mesh == nullptr) return null_argument();
+    if (Error problem = check_given({{"scene", scene}, {"mesh", mesh}})) return problem;
     fathom::Meshed made = scene->scene.mesh(to_options(options));
     if (made.error) return made.error;
     auto owned = std::make_unique<OwnedMesh>();

@@ -77,8 +77,9 @@ Error compile_text(const compiler::Source& source, const CompileOptions& options
 }
 
 // Reads a compiled file. Parameters replace numbers in the programs, so a file with parameters is compiled from its
-// text.
-Error read_compiled(const std::string& bytes, const std::string& path, const CompileOptions& options, Compiled& out) {
+// text. `foreign`: see Scene::Data.
+Error read_compiled(const std::string& bytes, const std::string& path, const CompileOptions& options, bool foreign,
+                    Compiled& out) {
   auto read = compiler::read_stored({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path);
   if (const auto* fault = std::get_if<compiler::FileError>(&read)) {
     return {Error::Kind::BadScene, fmt::format("{}: {}", path, fault->reason)};
@@ -103,6 +104,7 @@ Error read_compiled(const std::string& bytes, const std::string& path, const Com
   data->limits = limits;
   data->definitions = stored.contents.definitions;
   data->has_text = stored.contents.text;
+  data->foreign = foreign;
   out.scene = Scene(std::move(data));
   return {};
 }
@@ -124,11 +126,20 @@ compiler::ImportReader no_imports() {
   };
 }
 
+// Refuses what no text or file can be called.
+Error check(const CompileOptions& options) {
+  if (Error error = library::check_path("name", options.name)) return error;
+  if (Error error = library::check_path("folder", options.folder)) return error;
+  return library::check_path("import_root", options.import_root.value_or(""));
+}
+
 }  // namespace
 
 Compiled compile(std::string_view text, const CompileOptions& options) noexcept {
   Compiled out;
-  out.error = library::guard([&] {
+  out.error = library::guard([&]() -> Error {
+    if (Error error = library::announced("text", text)) return error;
+    if (Error error = check(options)) return error;
     const std::filesystem::path folder(options.folder);
     const std::string name = (folder / options.name).string();
     const auto imports = options.folder.empty() ? no_imports() : reader_of(options, options.folder);
@@ -140,15 +151,29 @@ Compiled compile(std::string_view text, const CompileOptions& options) noexcept 
 Compiled load(const std::string& path, const CompileOptions& options) noexcept {
   Compiled out;
   out.error = library::guard([&]() -> Error {
+    if (Error error = library::check_path("path", path)) return error;
+    if (Error error = check(options)) return error;
     auto read = runtime::read_file(path, limits_of(options));
     if (const auto* fault = std::get_if<runtime::FileFault>(&read)) {
       return {fault->too_large ? Error::Kind::BadScene : Error::Kind::File,
               fmt::format("cannot read `{}`: {}", path, fault->reason)};
     }
     auto& text = std::get<std::string>(read);
-    if (compiler::is_compiled_file(text)) return read_compiled(text, path, options, out);
+    if (compiler::is_compiled_file(text)) return read_compiled(text, path, options, false, out);
     const auto imports = reader_of(options, std::filesystem::path(path).parent_path().string());
     return compile_text(compiler::Source(path, std::move(text)), options, options.parameters, imports, out);
+  });
+  return out;
+}
+
+Compiled unpack(std::string_view bytes) noexcept {
+  Compiled out;
+  out.error = library::guard([&]() -> Error {
+    if (Error error = library::announced("bytes", bytes)) return error;
+    const char kind = bytes.empty() ? '\0' : bytes.front();
+    if (kind != library::kScene && kind != library::kForeign)
+      return library::bad_argument("bytes is no packed scene");
+    return read_compiled(std::string(bytes.substr(1)), "packed scene", {}, kind == library::kForeign, out);
   });
   return out;
 }

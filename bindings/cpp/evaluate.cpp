@@ -1,6 +1,8 @@
 // Distances and gradients of many points, in blocks that stay in the cache.
 #include "vm/interpret/evaluate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fathom/fathom.hpp>
@@ -43,6 +45,12 @@ vm::PointsOf<T> gather(const Points<T>& points, std::size_t begin, std::size_t c
 template <class T>
 Error check(const std::shared_ptr<const Scene::Data>& data, const Points<T>& points, const Values<T>& out) {
   if (!data) return library::bad_argument(library::kNoScene);
+  if (points.count > 0 && (points.x == nullptr || points.y == nullptr || points.z == nullptr)) {
+    return library::bad_argument("points is null");
+  }
+  if (Error error = library::announced("distance", out.distance)) return error;
+  if (Error error = library::announced("gradient", out.gradient)) return error;
+  if (Error error = library::announced("object", out.object)) return error;
   for (const std::size_t size : {out.distance.size(), out.gradient.size(), out.object.size()}) {
     if (size != 0 && size != points.count) {
       return library::bad_argument("a span of results is neither empty nor as long as the points");
@@ -153,6 +161,11 @@ Error Scene::range(std::span<const Box> boxes, std::span<Interval> out) const no
   return library::guard([&]() -> Error {
     if (!data_) return library::bad_argument(library::kNoScene);
     if (out.size() != boxes.size()) return library::bad_argument("the span of results is not as long as the boxes");
+    if (Error error = library::announced("boxes", boxes)) return error;
+    if (Error error = library::announced("out", out)) return error;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (Error error = library::check_box(fmt::format("box {}", i), boxes[i])) return error;
+    }
     vm::Workspace workspace;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const compiler::Box box =

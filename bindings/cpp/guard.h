@@ -5,6 +5,8 @@
 #include <exception>
 #include <fathom/fathom.hpp>
 #include <new>
+#include <string>
+#include <string_view>
 
 namespace fathom::library {
 
@@ -19,6 +21,19 @@ inline Error error_of(Error::Kind kind, std::string_view message) noexcept {
 }
 
 inline Error bad_argument(std::string_view message) noexcept { return error_of(Error::Kind::BadArgument, message); }
+
+// Returns the error that an argument is null though it has elements, or none.
+template <class Elements>
+Error announced(std::string_view name, const Elements& elements) {
+  if (elements.data() != nullptr || elements.empty()) return {};
+  return error_of(Error::Kind::BadArgument, std::string(name) + " is null");
+}
+
+// Returns the error that a path holds a zero byte, at which the system would cut it off, or none.
+inline Error check_path(std::string_view name, std::string_view path) {
+  if (path.find('\0') == path.npos) return {};
+  return error_of(Error::Kind::BadArgument, std::string(name) + " holds a zero byte");
+}
 
 // Calls `work`, which returns an Error, and converts exceptions to errors.
 template <class Work>

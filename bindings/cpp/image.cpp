@@ -8,6 +8,7 @@
 #include "runtime/film/film_layers.h"
 #include "runtime/image/image_exr.h"
 #include "runtime/image/image_io.h"
+#include "runtime/image/image_png.h"
 
 namespace fathom {
 namespace {
@@ -92,9 +93,20 @@ Error Image::read_display(std::span<std::uint8_t> out) const noexcept {
   });
 }
 
+Error Image::encode_png(std::vector<std::uint8_t>& out) const noexcept {
+  return library::guard([&]() -> Error {
+    if (!data_) return library::bad_argument(kNoImage);
+    const runtime::DisplayImage shown(runtime::layer_of(data_->film, runtime::Layer::Beauty), data_->tone);
+    out = runtime::encode_png(width(), height(), 8, true,
+                              [&](int y, std::span<std::uint8_t> bytes) { shown.row(y, bytes); });
+    return out.empty() ? Error{Error::Kind::Internal, "the picture cannot be encoded"} : Error{};
+  });
+}
+
 Error Image::write(const std::string& path) const noexcept {
   return library::guard([&]() -> Error {
     if (!data_) return library::bad_argument(kNoImage);
+    if (Error error = library::check_path("path", path)) return error;
     const runtime::ImageFormatInfo* const info = runtime::image_format_of(path);
     if (const auto problem = runtime::check_image_path(path)) {
       return library::error_of(info == nullptr ? Error::Kind::BadArgument : Error::Kind::File, *problem);

@@ -17,7 +17,7 @@ constexpr std::size_t kRays = 4096;
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 bool is_valid(const Ray& ray) {
   return is_finite(ray.origin) && is_finite(ray.direction) &&
-         (ray.direction.x != 0 || ray.direction.y != 0 || ray.direction.z != 0) && !(ray.t_max.value_or(0) < 0);
+         (ray.direction.x != 0 || ray.direction.y != 0 || ray.direction.z != 0) && ray.t_max.value_or(0) >= 0;
 }
 
 // A ray in the programs' coordinates. The marcher normalises directions, and so does this, with equal results.
@@ -71,8 +71,10 @@ Error Scene::march(std::span<const Ray> rays, std::span<Hit> out) const noexcept
   return library::guard([&]() -> Error {
     if (!data_) return library::bad_argument(library::kNoScene);
     if (out.size() != rays.size()) return library::bad_argument("the span of results is not as long as the rays");
+    if (Error error = library::announced("rays", rays)) return error;
+    if (Error error = library::announced("out", out)) return error;
     if (!std::ranges::all_of(rays, is_valid)) {
-      return library::bad_argument("a ray's numbers are not finite, its direction is zero or its t_max is below 0");
+      return library::bad_argument("a ray's numbers are not finite, its direction is zero or its t_max is not from 0");
     }
     vm::Workspace workspace;
     for (std::size_t begin = 0; begin < rays.size(); begin += kRays) {

@@ -47,6 +47,7 @@ Error check(const MeshOptions& options) {
     return library::bad_argument("the resolution is not from 4 to 262,144");
   }
   if (options.threads < 0) return library::bad_argument("the number of threads is below 0");
+  if (options.box) return library::check_box("box", *options.box);
   return {};
 }
 

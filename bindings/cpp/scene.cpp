@@ -1,10 +1,25 @@
+#include <fmt/format.h>
+
+#include <cmath>
 #include <fathom/fathom.hpp>
 
 #include "bindings/cpp/guard.h"
 #include "bindings/cpp/scene_data.h"
+#include "compiler/artefact/compiled_file.h"
 #include "vm/interpret/evaluate.h"
 
 namespace fathom {
+
+Error library::check_box(std::string_view name, const Box& box) {
+  const double lo[] = {box.lo.x, box.lo.y, box.lo.z}, hi[] = {box.hi.x, box.hi.y, box.hi.z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (lo[axis] <= hi[axis]) continue;
+    const bool is_nan = std::isnan(lo[axis]) || std::isnan(hi[axis]);
+    return bad_argument(fmt::format("{}: {} from {} to {}", name, "xyz"[axis], lo[axis], hi[axis]) +
+                        (is_nan ? " is not a number" : " has no inside"));
+  }
+  return {};
+}
 
 const char* version() noexcept { return FATHOM_VERSION; }
 
@@ -41,6 +56,16 @@ Error Scene::objects(std::vector<std::string>& out) const noexcept {
     if (!data_) return library::bad_argument(library::kNoScene);
     out.clear();
     for (const compiler::Surface& surface : data_->scene.surfaces) out.push_back(surface.name);
+    return {};
+  });
+}
+
+Error Scene::pack(std::string& out) const noexcept {
+  return library::guard([&]() -> Error {
+    if (!data_) return library::bad_argument(library::kNoScene);
+    const auto file = compiler::write_file(data_->scene, {true, data_->has_text, data_->definitions});
+    out.assign(1, data_->foreign ? library::kForeign : library::kScene);
+    out.append(file.begin(), file.end());
     return {};
   });
 }

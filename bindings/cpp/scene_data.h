@@ -44,8 +44,14 @@ struct __attribute__((visibility("hidden"))) Scene::Data {
 
 namespace library {
 
+// The first byte of a packed scene. A compiled file follows.
+inline constexpr char kScene = 'S', kForeign = 'F';
+
 inline Vec3d to_vec3(glm::dvec3 v) { return {v.x, v.y, v.z}; }
 inline glm::dvec3 to_glm(Vec3d v) { return {v.x, v.y, v.z}; }
+
+// Returns the error that a box has NaN, or corners in the wrong order, or none.
+Error check_box(std::string_view name, const Box& box);
 
 // Compiles the scene's text again, with other definitions after its own, for the picture: on a stage if the scene is
 // `foreign`. Returns nullopt after an error, with a message.

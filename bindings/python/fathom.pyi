@@ -52,7 +52,8 @@ class Image:
     depth: npt.NDArray[np.float32]
     object: npt.NDArray[np.uint32]
     display: npt.NDArray[np.uint8]
-    def save(self, path: str | PathLike[str]) -> None: ...
+    def save(self, path: str | bytes | PathLike[str]) -> None: ...
+    def _repr_png_(self) -> bytes: ...
 
 class Scene:
     objects: list[str]
@@ -71,7 +72,7 @@ class Scene:
         *,
         tolerance: float | None = None,
         resolution: int = 256,
-        box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None,
+        box: npt.ArrayLike | None = None,
         simplify: bool = True,
         threads: int = 0,
     ) -> Mesh: ...
@@ -89,6 +90,10 @@ class Scene:
     ) -> Image: ...
 
 def compile(
-    text: str, parameters: dict[str, float] | None = None, *, name: str = "scene", folder: str = ""
+    text: str,
+    parameters: dict[str, float] | None = None,
+    *,
+    name: str = "scene",
+    folder: str | bytes | PathLike[str] = "",
 ) -> Scene: ...
-def load(path: str | PathLike[str], parameters: dict[str, float] | None = None) -> Scene: ...
+def load(path: str | bytes | PathLike[str], parameters: dict[str, float] | None = None) -> Scene: ...

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "bindings/python/points.h"
+
 namespace py = pybind11;
 
 namespace fathom::python {
@@ -30,13 +32,10 @@ py::list list_of(const std::vector<LostPart>& lost) {
 
 }  // namespace
 
-py::object mesh(const SceneObject& scene, std::optional<double> tolerance, int resolution,
-                std::optional<std::pair<Corner, Corner>> box, bool simplify, int threads) {
+py::object mesh(const SceneObject& scene, std::optional<double> tolerance, int resolution, const py::object& box,
+                bool simplify, int threads) {
   MeshOptions options{tolerance, resolution, {}, simplify, threads};
-  if (box) {
-    const auto& [lo, hi] = *box;
-    options.box = {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
-  }
+  if (!box.is_none()) options.box = read_box(box, "box");
   Meshed made;
   {
     const py::gil_scoped_release release;
@@ -51,9 +50,9 @@ py::object mesh(const SceneObject& scene, std::optional<double> tolerance, int r
 }
 
 void bind_mesh(py::module_& module) {
-  module.attr("Mesh") = py::module_::import("collections")
-                            .attr("namedtuple")("Mesh", "vertices triangles object bound proved lost",
-                                                py::arg("module") = "fathom");
+  module.attr("Mesh") =
+      py::module_::import("collections")
+          .attr("namedtuple")("Mesh", "vertices triangles object bound proved lost", py::arg("module") = "fathom");
 }
 
 }  // namespace fathom::python

@@ -17,11 +17,16 @@ namespace py = pybind11;
 namespace fathom::python {
 namespace {
 
-using Parameters = std::optional<std::map<std::string, double>>;
+using Parameters = std::optional<py::dict>;
 
 CompileOptions to_options(const Parameters& parameters) {
   CompileOptions options;
-  if (parameters) options.parameters.assign(parameters->begin(), parameters->end());
+  if (!parameters) return options;
+  for (const auto& [key, value] : *parameters) {
+    if (!py::isinstance<py::str>(key)) throw py::type_error("parameters: a name is no str");
+    const std::string name = py::str(key);
+    options.parameters.emplace_back(name, to_number(value, "parameters['" + name + "']"));
+  }
   return options;
 }
 
@@ -33,10 +38,10 @@ SceneObject take(Compiled compiled) {
 }
 
 SceneObject compile_text(const std::string& text, const Parameters& parameters, const std::string& name,
-                         const std::string& folder) {
+                         const py::object& folder) {
   CompileOptions options = to_options(parameters);
   options.name = name;
-  options.folder = folder;
+  options.folder = to_path(folder);
   Compiled compiled;
   {
     const py::gil_scoped_release release;
@@ -46,7 +51,7 @@ SceneObject compile_text(const std::string& text, const Parameters& parameters, 
 }
 
 SceneObject load_file(const py::object& path, const Parameters& parameters) {
-  const std::string file = py::str(py::module_::import("os").attr("fspath")(path));
+  const std::string file = to_path(path);
   const CompileOptions options = to_options(parameters);
   Compiled compiled;
   {
@@ -54,6 +59,24 @@ SceneObject load_file(const py::object& path, const Parameters& parameters) {
     compiled = load(file, options);
   }
   return take(std::move(compiled));
+}
+
+SceneObject unpack_scene(const std::string& bytes) {
+  Compiled compiled;
+  {
+    const py::gil_scoped_release release;
+    compiled = unpack(bytes);
+  }
+  return take(std::move(compiled));
+}
+
+// Pickles a scene without its warnings.
+py::tuple reduce(const SceneObject& scene) {
+  std::string bytes;
+  check(scene.scene.pack(bytes));
+  // Functions of this module cannot be pickled, and the class can.
+  const py::object unpack = py::module_::import("operator").attr("methodcaller")("_unpack", py::bytes(bytes));
+  return py::make_tuple(unpack, py::make_tuple(py::type::of<SceneObject>()));
 }
 
 py::dict parameters_of(const SceneObject& scene) {
@@ -76,7 +99,7 @@ std::string describe(const SceneObject& scene) {
 }
 
 void bind_diagnostics(py::module_& module) {
-  py::class_<Diagnostic>(module, "Diagnostic", "An error or warning about a scene's text.")
+  py::class_<Diagnostic>(module, "Diagnostic", made_by_functions(), "An error or warning about a scene's text.")
       .def_property_readonly("severity", [](const Diagnostic& d) { return d.error ? "error" : "warning"; })
       .def_readonly("code", &Diagnostic::code, "such as 'E0102'")
       .def_readonly("message", &Diagnostic::message)
@@ -94,7 +117,7 @@ void bind_diagnostics(py::module_& module) {
 }
 
 void bind_scene(py::module_& module) {
-  py::class_<SceneObject>(module, "Scene",
+  py::class_<SceneObject>(module, "Scene", made_by_functions(),
                           "A compiled scene. It does not change, and any threads may use it at once.")
       .def("distance", &distance, py::arg("points"), py::arg("out") = py::none(),
            "Signed distances, scene units, of points of shape (..., 3): in float32 for float32 arrays, otherwise in\n"
@@ -106,7 +129,9 @@ void bind_scene(py::module_& module) {
       .def("range", &range, py::arg("lo"), py::arg("hi"),
            "Bounds (..., 2) of the distances in the boxes from lo (..., 3) to hi (..., 3).")
       .def("march", &march, py::arg("origins"), py::arg("directions"), py::arg("t_max") = py::none(),
-           "Follows rays, given by arrays (..., 3), to the first surface. Returns Hits.")
+           "Follows rays, given by arrays (..., 3), to the first surface. Returns Hits. A single origin or direction "
+           "is\n"
+           "that of all rays, as numpy broadcasts arrays.")
       .def("render", &render, py::kw_only(), py::arg("width") = py::none(), py::arg("height") = py::none(),
            py::arg("samples") = py::none(), py::arg("seed") = py::none(), py::arg("denoise") = false,
            py::arg("threads") = 0, py::arg("time_limit") = py::none(), py::arg("progress") = py::none(),
@@ -126,6 +151,8 @@ void bind_scene(py::module_& module) {
           "max change of the distance per unit of length")
       .def_property_readonly(
           "certified", [](const SceneObject& s) { return s.scene.certified(); }, "whether `lipschitz` is proved")
+      .def("__reduce__", &reduce)
+      .def_static("_unpack", &unpack_scene, py::arg("bytes"))
       .def("__repr__", &describe);
 }
 
@@ -144,7 +171,7 @@ PYBIND11_MODULE(fathom, module) {
   bind_mesh(module);
   module.def(
       "compile", &compile_text, py::arg("text"), py::arg("parameters") = py::none(), py::kw_only(),
-      py::arg("name") = "scene", py::arg("folder") = "",
+      py::arg("name") = "scene", py::arg("folder") = py::str(""),
       "Compiles a scene's text: the scene language, JSON or a model of another format. `parameters` maps names\n"
       "to values. `folder` is where imports are. Raises SceneError.");
   module.def("load", &load_file, py::arg("path"), py::arg("parameters") = py::none(),

@@ -38,7 +38,7 @@ bool has_one_stride(const py::array_t<T>& array) {
 template <class T>
 PointArray<T> read_points(const py::object& object, const char* name) {
   auto array = py::array_t<T, py::array::forcecast>::ensure(object);
-  if (!array) throw py::error_already_set();
+  if (!array) throw py::type_error(std::string(name) + " is no array of numbers");
   if (array.ndim() < 1 || array.shape(array.ndim() - 1) != 3) {
     throw py::value_error(std::string(name) + " has no last axis of length 3: x, y, z");
   }
@@ -116,10 +116,24 @@ void check_shapes(const Shape& a, const Shape& b, const char* names) {
   if (a != b) throw py::value_error(std::string(names) + " differ in shape");
 }
 
+// Reads two arrays of points, repeated to one shape as numpy broadcasts them.
+std::pair<PointArray<double>, PointArray<double>> read_both(const py::object& a, const py::object& b,
+                                                            const char* name_a, const char* name_b) {
+  auto first = read_points<double>(a, name_a), second = read_points<double>(b, name_b);
+  if (first.shape == second.shape) return {first, second};
+  try {
+    const py::list both = py::module_::import("numpy").attr("broadcast_arrays")(first.array, second.array);
+    return {read_points<double>(both[0], name_a), read_points<double>(both[1], name_b)};
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError)) throw;
+    throw py::value_error(std::string(name_a) + " and " + name_b + " differ in shape");
+  }
+}
+
 std::vector<Ray> read_rays(const PointArray<double>& origins, const PointArray<double>& directions,
                            const py::object& t_max) {
   std::optional<double> limit;
-  if (!t_max.is_none()) limit = py::cast<double>(t_max);
+  if (!t_max.is_none()) limit = to_number(t_max, "t_max");
   std::vector<Ray> rays(origins.points.count);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     rays[i] = {point_at(origins.points, i), point_at(directions.points, i), limit};
@@ -151,6 +165,12 @@ py::array vectors(const std::vector<Hit>& hits, Shape shape, Get get) {
 
 }  // namespace
 
+Box read_box(const py::object& object, const char* name) {
+  const auto corners = read_points<double>(object, name);
+  if (corners.shape != Shape{2}) throw py::value_error(std::string(name) + " is no pair of corners (lo, hi)");
+  return {point_at(corners.points, 0), point_at(corners.points, 1)};
+}
+
 py::array distance(const SceneObject& scene, const py::object& points, const py::object& out) {
   return is_float32(points) ? distance_of<float>(scene.scene, points, out)
                             : distance_of<double>(scene.scene, points, out);
@@ -180,8 +200,7 @@ py::array range(const SceneObject& scene, const py::object& lo, const py::object
 
 py::object march(const SceneObject& scene, const py::object& origins, const py::object& directions,
                  const py::object& t_max) {
-  const auto from = read_points<double>(origins, "origins"), along = read_points<double>(directions, "directions");
-  check_shapes(from.shape, along.shape, "origins and directions");
+  const auto [from, along] = read_both(origins, directions, "origins", "directions");
   const std::vector<Ray> rays = read_rays(from, along, t_max);
   std::vector<Hit> hits(rays.size());
   run([&] { return scene.scene.march(rays, hits); });

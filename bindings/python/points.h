@@ -7,6 +7,9 @@
 
 namespace fathom::python {
 
+// Reads an array (2, 3) of two corners.
+Box read_box(const pybind11::object& object, const char* name);
+
 // See the documentation strings of the module.
 pybind11::array distance(const SceneObject& scene, const pybind11::object& points, const pybind11::object& out);
 pybind11::array gradient(const SceneObject& scene, const pybind11::object& points, const pybind11::object& out);

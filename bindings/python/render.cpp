@@ -36,7 +36,7 @@ py::array_t<T> read_values(const Image& image, Shape shape, Error (Image::*read)
 }
 
 void save(const Image& image, const py::object& path) {
-  const std::string file = py::str(py::module_::import("os").attr("fspath")(path));
+  const std::string file = to_path(path);
   Error error;
   {
     const py::gil_scoped_release release;
@@ -51,6 +51,7 @@ void save(const Image& image, const py::object& path) {
 Image render(const SceneObject& scene, std::optional<int> width, std::optional<int> height,
              std::optional<int> samples, std::optional<std::uint64_t> seed, bool denoise, int threads,
              std::optional<double> time_limit, const py::object& progress) {
+  if (!progress.is_none() && !PyCallable_Check(progress.ptr())) throw py::type_error("progress is no function");
   constexpr auto kInterval = std::chrono::milliseconds(50);
   std::atomic<double> fraction = 0;
   std::stop_source stop;
@@ -84,7 +85,8 @@ void bind_render(py::module_& module) {
       py::module_::import("collections")
           .attr("namedtuple")("Hits", "hit t position normal object inside", py::arg("module") = "fathom");
   module.attr("NO_OBJECT") = Image::kNoObject;
-  py::class_<Image>(module, "Image", "A rendered image. Each array is made anew when it is read.")
+  py::class_<Image>(module, "Image", made_by_functions(),
+                    "A rendered image. Each array is made anew when it is read.")
       .def_property_readonly("width", &Image::width)
       .def_property_readonly("height", &Image::height)
       .def_property_readonly("complete", &Image::complete, "False if a stop or the time limit ended the render")
@@ -118,6 +120,14 @@ void bind_render(py::module_& module) {
             return read_values<std::uint8_t>(i, {i.height(), i.width(), 3}, &Image::read_display);
           },
           "for a display: exposure and tone curve of the scene, sRGB encoded, uint8")
+      .def(
+          "_repr_png_",
+          [](const Image& i) {
+            std::vector<std::uint8_t> file;
+            check(i.encode_png(file));
+            return py::bytes(reinterpret_cast<const char*>(file.data()), file.size());
+          },
+          "How notebooks show the image.")
       .def("save", &save, py::arg("path"),
            "Writes the image in the format of the path's ending: png, jpg, bmp, exr, pfm or hdr.");
 }

@@ -1,6 +1,7 @@
 """Builds the module with CMake from the source tree: pip install ./bindings/python
 
-Needs the packages of `scripts/install-packages python`. CMAKE_ARGS may hold further options of CMake, e.g.
+Needs the packages of `scripts/install-packages`, and Python's headers (Debian: python3-dev). pip brings pybind11;
+--no-build-isolation takes the system's (pybind11-dev). CMAKE_ARGS may hold further options of CMake, e.g.
 -DFATHOM_ISAS=host.
 """
 import os
@@ -23,6 +24,11 @@ class CMakeBuild(build_ext):
         options = ["-DCMAKE_BUILD_TYPE=Release", "-DFATHOM_PYTHON=ON", "-DFATHOM_TESTS=OFF", "-DFATHOM_BENCH=OFF",
                    f"-DPython_EXECUTABLE={sys.executable}", f"-DCMAKE_INSTALL_PREFIX={target.parent}",
                    "-DFATHOM_PYTHON_DIR=.", *shlex.split(os.environ.get("CMAKE_ARGS", ""))]
+        try:
+            import pybind11
+            options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
+        except ImportError:
+            options.append("-Upybind11_DIR")  # of an isolated build before, which is gone
         if shutil.which("ccache"):
             options.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
             os.environ.setdefault("CCACHE_BASEDIR", str(ROOT))

@@ -1,6 +1,9 @@
 """Tests of the Python module, against an installed `fathom` program: python3 test_fathom.py"""
+import copy
 import math
+import os
 import pathlib
+import pickle
 import subprocess
 import sys
 import tempfile
@@ -71,7 +74,102 @@ class Points(unittest.TestCase):
         self.assertFalse(self.scene.march([[0, 0, 3]], [[0, 0, -1]], t_max=1.5).hit[0])
 
 
+    def test_one_origin_serves_all_rays(self):
+        directions = np.random.default_rng(3).normal(size=(4, 5, 3))
+        hits = self.scene.march([0, 0, 0], directions)
+        self.assertEqual(hits.t.shape, (4, 5))
+        np.testing.assert_array_equal(hits.t, self.scene.march(np.zeros((4, 5, 3)), directions).t)
+        hits = self.scene.march(directions[0], [0, 0, -1])
+        np.testing.assert_array_equal(hits.t, self.scene.march(directions[0], [[0, 0, -1]] * 5).t)
+        with self.assertRaisesRegex(ValueError, "origins and directions"):
+            self.scene.march(np.zeros((2, 3)), np.ones((3, 3)))
+
+    # numpy's failure to convert an argument was an internal error.
+    def test_arguments_without_numbers_are_named(self):
+        for bad in ("abc", ["a", "b", "c"], [[0, 0, 0], [0, 0]], [[0, 0, 0], 1], object(), {1: 2}):
+            for name, call in (("points", self.scene.distance), ("points", self.scene.gradient),
+                               ("points", self.scene.nearest), ("lo", lambda b: self.scene.range(b, [0, 0, 0])),
+                               ("hi", lambda b: self.scene.range([0, 0, 0], b)),
+                               ("origins", lambda b: self.scene.march(b, [0, 0, 1])),
+                               ("directions", lambda b: self.scene.march([0, 0, 1], b)),
+                               ("box", lambda b: self.scene.mesh(box=b))):
+                with self.assertRaisesRegex(TypeError, f"^{name} is no array of numbers"):
+                    call(bad)
+        for bad in (None, 3, [], [1, 2], np.zeros((3, 2))):
+            with self.assertRaisesRegex(ValueError, "points has no last axis"):
+                self.scene.distance(bad)
+        with self.assertRaisesRegex(TypeError, "t_max is no number"):
+            self.scene.march([0, 0, 3], [0, 0, -1], t_max="far")
+        with self.assertRaisesRegex(ValueError, "t_max"):
+            self.scene.march([0, 0, 3], [0, 0, -1], t_max=math.nan)
+        with self.assertRaisesRegex(TypeError, "out is no array"):
+            self.scene.distance(self.points, out="here")
+
+    def test_boxes_without_inside_are_named(self):
+        for lo, hi, what in (([0, 0, 0], [1, -1, 1], "y from 0.0 to -1.0"), ([0, 0, math.nan], [1, 1, 1], "z from nan"),
+                             ([0, 0, 0], [math.nan, 1, 1], "x from"), ([math.inf, 0, 0], [0, 0, 0], "x from inf")):
+            what = what.replace(".0", "")
+            with self.assertRaisesRegex(ValueError, "box 1: " + what):
+                self.scene.range([[0, 0, 0], lo], [[1, 1, 1], hi])
+            with self.assertRaisesRegex(ValueError, "box: " + what):
+                self.scene.mesh(box=(lo, hi))
+        with self.assertRaisesRegex(ValueError, "box is no pair"):
+            self.scene.mesh(box=[[0, 0, 0]] * 3)
+        self.assertEqual(self.scene.range([0, 0, 0], [0, 0, 0]).shape, (2,))
+
+
 class Scenes(unittest.TestCase):
+    def test_paths_are_text_bytes_or_objects(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "bäll.fathom")
+            path.write_text(BALL)
+            for name in (path, str(path), os.fsencode(path)):
+                self.assertEqual(fathom.load(name).objects, ["ball"])
+            self.assertEqual(fathom.compile('fathom 1\nimport "bäll.fathom" as b\nobject "a" sphere(1)\n', folder=path.parent)
+                             .objects, ["a"])
+        for bad in ("ball\0.fathom", b"ball\0.fathom"):
+            with self.assertRaisesRegex(ValueError, "path holds a zero byte"):
+                fathom.load(bad)
+        with self.assertRaisesRegex(ValueError, "folder holds a zero byte"):
+            fathom.compile(BALL, folder="a\0b")
+        with self.assertRaises(TypeError):
+            fathom.load(3)
+
+    # pybind11 gave such an object memory without contents, which every method then read.
+    def test_objects_come_from_functions_alone(self):
+        for kind in (fathom.Scene, fathom.Image, fathom.Diagnostic):
+            for make in (kind, lambda: kind.__new__(kind), lambda: object.__new__(kind),
+                         lambda: kind.__mro__[1].__new__(kind), type("Other", (kind,), {})):
+                with self.assertRaises(TypeError):
+                    make()
+
+    def test_a_scene_can_be_pickled(self):
+        scene = fathom.compile(ENDLESS, {"r": 1.5})
+        for copied in (pickle.loads(pickle.dumps(scene)), copy.copy(scene), copy.deepcopy(scene)):
+            self.assertEqual((copied.objects, copied.parameters), (["ball"], {"r": 1.5}))
+            self.assertEqual(copied.distance([2, 0, 0]), 0.5)
+            np.testing.assert_array_equal(copied.render(width=8, height=8, samples=2).radiance,
+                                          scene.render(width=8, height=8, samples=2).radiance)
+        # A model of another format is rendered on a stage.
+        model = fathom.compile("# a comment\n_0 var-x\n_1 const 1.0\n_2 sub _0 _1\n")
+        copied = pickle.loads(pickle.dumps(model))
+        np.testing.assert_array_equal(copied.render(width=8, height=8, samples=2).radiance,
+                                      model.render(width=8, height=8, samples=2).radiance)
+        for bad in (b"", b"x", b"S", b"Sx", pickle.dumps(scene)):
+            with self.assertRaises(ValueError):
+                fathom.Scene._unpack(bad)
+
+    def test_parameters_are_named_without_options_of_the_program(self):
+        for bad, what in (({"radius": 1}, "`radius`"), ({"r": math.nan}, "`r`")):
+            with self.assertRaisesRegex(fathom.SceneError, what) as caught:
+                fathom.compile(BALL, bad)
+            self.assertNotIn("-D", str(caught.exception))
+        with self.assertRaisesRegex(TypeError, r"parameters\['r'\] is no number"):
+            fathom.compile(BALL, {"r": "wide"})
+        with self.assertRaisesRegex(TypeError, "parameters: a name"):
+            fathom.compile(BALL, {1: 2})
+        self.assertEqual(fathom.compile(BALL, {"r": np.float32(0.5)}).parameters, {"r": 0.5})
+
     def test_errors_have_spans(self):
         with self.assertRaises(fathom.SceneError) as caught:
             fathom.compile('fathom 1\nobject "ä" spere(1)\n')
@@ -168,6 +266,13 @@ class Renders(unittest.TestCase):
             self.assertGreater(pathlib.Path(folder, "ball.png").stat().st_size, 50)
             with self.assertRaises(ValueError):
                 image.save(pathlib.Path(folder, "ball.gif"))
+            image.save(os.fsencode(pathlib.Path(folder, "bytes.png")))
+            self.assertEqual(pathlib.Path(folder, "bytes.png").read_bytes(), image._repr_png_())
+            with self.assertRaisesRegex(ValueError, "path holds a zero byte"):
+                image.save(str(pathlib.Path(folder, "x\0.png")))
+            self.assertEqual(sorted(os.listdir(folder)), ["ball.png", "bytes.png"])
+        with self.assertRaisesRegex(TypeError, "progress"):
+            scene.render(width=4, height=4, samples=1, progress="loud")
 
 
 if __name__ == "__main__":

@@ -31,6 +31,27 @@ void bind_errors(py::module_& module) {
   module.attr("SceneError") = type;
 }
 
+py::custom_type_setup made_by_functions() {
+  return py::custom_type_setup([](PyHeapTypeObject* heap) {
+    heap->ht_type.tp_new = [](PyTypeObject* type, PyObject*, PyObject*) -> PyObject* {
+      PyErr_Format(PyExc_TypeError, "%s has no constructor: functions of the module and methods return it",
+                   type->tp_name);
+      return nullptr;
+    };
+  });
+}
+
+std::string to_path(const py::object& path) {
+  return py::cast<std::string>(py::module_::import("os").attr("fsencode")(path));
+}
+
+double to_number(const py::handle& value, const std::string& name) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (!PyErr_Occurred()) return number;
+  PyErr_Clear();
+  throw py::type_error(name + " is no number");
+}
+
 void throw_error(const Error& error, std::span<const Diagnostic> diagnostics) {
   if (error.kind == Error::Kind::BadScene) {
     const py::object type = scene_error_type();

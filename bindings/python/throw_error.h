@@ -18,6 +18,16 @@ struct SceneObject {
 // Adds the class SceneError, whose attribute `diagnostics` lists errors and warnings.
 void bind_errors(pybind11::module_& module);
 
+// Setup of a class whose objects come from functions alone. pybind11 would let T.__new__(T) make one without
+// contents.
+pybind11::custom_type_setup made_by_functions();
+
+// Returns a path, given as str, bytes or os.PathLike, as the system writes it.
+std::string to_path(const pybind11::object& path);
+
+// Returns the number, or raises TypeError, which names it.
+double to_number(const pybind11::handle& value, const std::string& name);
+
 // Throws the exception of an error: SceneError, ValueError, OSError, MemoryError or RuntimeError.
 [[noreturn]] void throw_error(const Error& error, std::span<const Diagnostic> diagnostics = {});
 

@@ -65,6 +65,56 @@ static int check_values(const fathom_scene* scene) {
   return 0;
 }
 
+#define NAMES(call, what) \
+  CHECK((call) == FATHOM_BAD_ARGUMENT && strncmp(error.message, what, strlen(what)) == 0)
+
+/* NULL where an array is announced, or a name needed, was a signal or an internal error. */
+static int check_nulls(const fathom_scene* scene) {
+  static const double kPoint[] = {0, 0, 0}, kUp[] = {0, 1, 0}, kNan[] = {0, NAN, 0};
+  static const char kText[] = "fathom 1\nobject \"a\" sphere(1)\n";
+  fathom_definition unnamed = {NULL, 1};
+  fathom_compile_options options;
+  fathom_mesh_options cut;
+  fathom_scene* made = NULL;
+  const fathom_mesh* mesh = NULL;
+  fathom_error error;
+  double value[6], box[6] = {1, 0, 0, 0, 1, 1};
+  fathom_hit hit;
+  memset(&options, 0, sizeof options);
+  memset(&cut, 0, sizeof cut);
+  options.parameter_count = 1;
+  NAMES(fathom_compile(kText, strlen(kText), &options, &made, NULL, &error), "options.parameters is NULL");
+  NAMES(fathom_load("a.fathom", &options, &made, NULL, &error), "options.parameters is NULL");
+  options.parameters = &unnamed;
+  NAMES(fathom_compile(kText, strlen(kText), &options, &made, NULL, &error), "options.parameters[0].name is NULL");
+  NAMES(fathom_compile(NULL, 8, NULL, &made, NULL, &error), "text is NULL");
+  NAMES(fathom_compile(kText, strlen(kText), NULL, NULL, NULL, &error), "scene is NULL");
+  NAMES(fathom_load(NULL, NULL, &made, NULL, &error), "path is NULL");
+  NAMES(fathom_distance_f64(NULL, kPoint, 3, 1, value, &error), "scene is NULL");
+  NAMES(fathom_distance_f64(scene, NULL, 3, 1, value, &error), "points is NULL");
+  NAMES(fathom_distance_f64(scene, kPoint, 3, 1, NULL, &error), "distance is NULL");
+  NAMES(fathom_distance_f32(scene, NULL, 3, 1, NULL, &error), "distance is NULL");
+  NAMES(fathom_evaluate_f64(scene, NULL, 3, 1, value, NULL, NULL, &error), "points is NULL");
+  NAMES(fathom_range(scene, NULL, kUp, value, &error), "lo is NULL");
+  NAMES(fathom_range(scene, kPoint, kUp, NULL, &error), "range is NULL");
+  NAMES(fathom_range(scene, kUp, kPoint, value, &error), "box 0: y from 1 to 0");
+  NAMES(fathom_range(scene, kPoint, kNan, value, &error), "box 0: y from 0 to nan");
+  NAMES(fathom_march(scene, NULL, kUp, 1, &hit, &error), "origins is NULL");
+  NAMES(fathom_march(scene, kPoint, NULL, 1, &hit, &error), "directions is NULL");
+  NAMES(fathom_march(scene, kPoint, kUp, 1, NULL, &error), "hits is NULL");
+  NAMES(fathom_render(scene, NULL, NULL, &error), "image is NULL");
+  NAMES(fathom_image_depth(NULL, NULL, &error), "image is NULL");
+  NAMES(fathom_image_write(NULL, "a.png", &error), "image is NULL");
+  NAMES(fathom_make_mesh(scene, NULL, NULL, &error), "mesh is NULL");
+  cut.box = box;
+  NAMES(fathom_make_mesh(scene, &cut, &mesh, &error), "box: x from 1 to 0");
+  CHECK(fathom_distance_f64(scene, NULL, 3, 0, NULL, &error) == FATHOM_OK);
+  CHECK(fathom_march(scene, NULL, NULL, 0, NULL, &error) == FATHOM_OK);
+  fathom_bounds(scene, NULL, value);
+  fathom_bounds(scene, value, NULL);
+  return 0;
+}
+
 static int check_render(const fathom_scene* scene) {
   fathom_render_options options;
   fathom_image* image = NULL;
@@ -122,6 +172,7 @@ int check_c_interface(void) {
   CHECK(fathom_compile(kBall, strlen(kBall), &options, &scene, NULL, NULL) == FATHOM_OK && scene != NULL);
   line = check_errors();
   if (line == 0) line = check_values(scene);
+  if (line == 0) line = check_nulls(scene);
   if (line == 0) line = check_render(scene);
   if (line == 0) line = check_mesh(scene);
   fathom_scene_free(scene);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <fathom/fathom.hpp>
@@ -197,6 +198,50 @@ TEST_CASE("errors of the library say what is wrong", "[library]") {
   const Ray ray{{0, 0, 0}, {0, 0, 0}};
   Hit hit;
   CHECK(scene.march({&ray, 1}, {&hit, 1}).kind == Error::Kind::BadArgument);
+}
+
+// A span without a place was read, and a path ended at its zero byte.
+TEST_CASE("arguments of the library are checked and named", "[library]") {
+  const Scene scene = compiled("fathom 1\nparam r = 1\nobject \"a\" sphere(r)\n");
+  const auto names = [](const Error& error, const std::string& what) {
+    CAPTURE(error.message, what);
+    CHECK(error.kind == Error::Kind::BadArgument);
+    CHECK(error.message.find(what) != std::string::npos);
+  };
+  std::array<double, 2> out{};
+  const Points<double> nowhere{nullptr, nullptr, nullptr, 2, 3};
+  names(scene.distance(nowhere, out), "points is null");
+  std::array<Hit, 2> hits;
+  names(scene.march(std::span<const Ray>(static_cast<const Ray*>(nullptr), 2), hits), "rays is null");
+  std::array<Interval, 2> intervals{};
+  names(scene.range(std::span<const Box>(static_cast<const Box*>(nullptr), 2), intervals), "boxes is null");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::array<Box, 2> boxes = {Box{{0, 0, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {1, 1, nan}}};
+  names(scene.range(boxes, intervals), "box 1: z from 0 to nan");
+  const std::array<Ray, 1> ray = {Ray{{0, 0, 3}, {0, 0, -1}, nan}};
+  names(scene.march(ray, std::span(hits).first(1)), "t_max");
+  using std::string_literals::operator""s;
+  CompileOptions options;
+  options.folder = "a\0b"s;
+  names(compile("fathom 1\n", options).error, "folder");
+  names(load("a\0b"s).error, "path");
+  names(compile({static_cast<const char*>(nullptr), 3}).error, "text is null");
+  names(scene.render({.width = 4, .height = 4, .samples = 1}).image.write("x\0.png"s), "path");
+  CHECK_FALSE(std::filesystem::exists("x"));
+  names(unpack("").error, "bytes");
+}
+
+TEST_CASE("a packed scene is the scene", "[library]") {
+  const Scene scene = compiled("fathom 1\nparam r = 1\nobject \"a\" sphere(r)\n");
+  std::string bytes;
+  REQUIRE_FALSE(scene.pack(bytes));
+  const Compiled again = unpack(bytes);
+  REQUIRE(again.scene);
+  std::vector<std::string> objects;
+  REQUIRE_FALSE(again.scene.objects(objects));
+  CHECK(objects == std::vector<std::string>{"a"});
+  CHECK(unpack(bytes.substr(0, bytes.size() / 2)).error.kind == Error::Kind::BadScene);
+  CHECK(Scene().pack(bytes).kind == Error::Kind::BadArgument);
 }
 
 TEST_CASE("points that are not finite have distances that are not finite", "[library]") {

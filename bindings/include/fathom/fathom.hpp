@@ -173,6 +173,8 @@ class FATHOM_API Image {
   Error read_objects(std::span<std::uint32_t> out) const noexcept;
   // The image for a display, with the scene's exposure and tone curve, sRGB encoded, [y][x][3].
   Error read_display(std::span<std::uint8_t> out) const noexcept;
+  // The bytes of the PNG file that write() makes.
+  Error encode_png(std::vector<std::uint8_t>& out) const noexcept;
   // Writes the image in the format of the file name's ending: png, jpg, bmp, exr (all layers), pfm or hdr. The file
   // appears whole or not at all.
   Error write(const std::string& path) const noexcept;
@@ -237,7 +239,7 @@ class FATHOM_API Scene {
   // Several results at once.
   Error evaluate(Points<float> points, const Values<float>& out) const noexcept;
   Error evaluate(Points<double> points, const Values<double>& out) const noexcept;
-  // Intervals that contain all distances in each box, by interval arithmetic (Moore, "Interval Analysis", 1966).
+  // Intervals that contain all distances in each box, whose `lo` is nowhere above its `hi`, by interval arithmetic (Moore, "Interval Analysis", 1966).
   Error range(std::span<const Box> boxes, std::span<Interval> out) const noexcept;
   // Follows rays to the first surface.
   Error march(std::span<const Ray> rays, std::span<Hit> out) const noexcept;
@@ -255,6 +257,8 @@ class FATHOM_API Scene {
   // Names of the objects, in the order of Values::object. A name may be empty.
   Error objects(std::vector<std::string>& out) const noexcept;
   Error parameters(std::vector<Parameter>& out) const noexcept;
+  // The scene as bytes for unpack(), of the same version of the library.
+  Error pack(std::string& out) const noexcept;
   // Width, height and samples per pixel that the scene states.
   int width() const noexcept;
   int height() const noexcept;
@@ -289,6 +293,9 @@ struct Compiled {
 FATHOM_API Compiled compile(std::string_view text, const CompileOptions& options = {}) noexcept;
 // Reads and compiles a scene file, or reads a compiled file (.fbc). `options.name` is ignored.
 FATHOM_API Compiled load(const std::string& path, const CompileOptions& options = {}) noexcept;
+
+// Makes a scene of the bytes of Scene::pack(). Believes them: bytes of others belong to load().
+FATHOM_API Compiled unpack(std::string_view bytes) noexcept;
 
 // Formats diagnostics as `fathom check` prints them, without excerpts of the text: "scene:3:14: error: ...", a line
 // each.

@@ -91,10 +91,10 @@ void read_entry(const syntax::Property& property, const Definitions& definitions
   }
   std::vector<std::string> help;
   if (!parameter.doc.empty()) help = {fmt::format("`{}`: {}", parameter.name, parameter.doc)};
-  diagnostics.error(given ? "E0502" : "E0408", given ? property.name_span : property.value->span,
-                    fmt::format("{}`{}` must be {}; it is {}", given ? "-D: " : "", parameter.name, rule,
-                                describe(syntax::Value{{}, parameter.value})),
-                    "", std::move(help));
+  diagnostics.error(
+      given ? "E0502" : "E0408", given ? property.name_span : property.value->span,
+      fmt::format("`{}` must be {}; it is {}", parameter.name, rule, describe(syntax::Value{{}, parameter.value})),
+      "", std::move(help));
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ void check_definitions(const Definitions& definitions, const Scope& scope, Diagn
   for (const auto& [name, value] : definitions) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     diagnostics.error(
-        "E0501", {}, fmt::format("-D: the scene has no parameter `{}`", name), "",
+        "E0501", {}, fmt::format("the scene has no parameter `{}`, which is given a value", name), "",
         {known.empty() ? diagnostics.spelled("parameters are declared in the scene: \"params\": {\"r\": 0.5}",
                                              "parameters are declared in the scene: param r = 0.5")
                        : did_you_mean(name, known)});
