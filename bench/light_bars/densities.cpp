@@ -138,10 +138,10 @@ Group environments(int samples) {
       group.pairs.push_back({fmt::format("{} for normal y {}", c.name, query.normal.y), [=] {
                                const auto sample = [&](Sampler& s) {
                                  const float choice = s.next();
-                                 return environment->sample(query, choice, s.next2());
+                                 return test::sample_of(*environment, query, choice, s.next2()).direction;
                                };
                                const auto pdf = [&](glm::vec3 w) {
-                                 return static_cast<double>(environment->pdf(query, w));
+                                 return static_cast<double>(test::pdf_of(*environment, query, w));
                                };
                                return test::chi_square(sample, pdf, setup);
                              }});

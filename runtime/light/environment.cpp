@@ -1,6 +1,7 @@
 #include "runtime/light/environment.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
@@ -20,12 +21,8 @@ constexpr double kRounding = 0x1p-24;
 // Minimum angle of a disc, degrees. Directions in float would make the disc larger by kRounding all round: at this
 // angle by 0.03 % of its area.
 constexpr double kMinDisc = 0.02;
-
-// Turns a direction about y, counter-clockwise as seen from above.
-glm::vec3 turned(glm::vec3 w, double sine, double cosine) {
-  const glm::dvec3 d(w);
-  return {cosine * d.x + sine * d.z, d.y, cosine * d.z - sine * d.x};
-}
+// Share of the background's light by which it exceeds its mean, below which it counts as even.
+constexpr double kMinUneven = 1e-3;
 
 // Returns the mean luminance over each pixel of the image after bilinear filtering: weights 1, 6, 1 of 8 along each
 // axis.
@@ -78,23 +75,32 @@ Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<c
   if (type_ == Type::Image) {
     CHECK(image != nullptr && !image->pixels.empty(),
           "the scene's background is a picture, which must be read first");
-    image_ = std::move(image);
-    rotation_sine_ = vm::real::sin(background.image.rotate * vm::real::kDegree);
-    rotation_cosine_ = vm::real::cos(background.image.rotate * vm::real::kDegree);
     strength_ = static_cast<float>(background.image.strength);
-    table_ = PiecewiseConstantSphere(image_->width, image_->height, filtered_luminance(*image_));
+    set_table(image->width, image->height, filtered_luminance(*image),
+              {image->pixels, strength_, background.image.rotate / 360});
   }
   if (type_ == Type::Sky) {
     constexpr int kRows = 64;
     sky_.emplace(background.sky);
-    table_ = PiecewiseConstantSphere(
-        2 * kRows, kRows, cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
+    set_table(2 * kRows, kRows, cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }), {});
     if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
   }
   for (const compiler::Light& light : scene.lights) {
     if (light.type != compiler::Light::Type::Directional || light.angle == 0) continue;
     add_disc(-light.direction, light.angle, glm::vec3(light.intensity));
   }
+}
+
+void Environment::set_table(int width, int height, std::vector<float> luminances,
+                            const PiecewiseConstantSphere::Image& image) {
+  const double mean_of_all = mean_over_sphere(width, height, luminances);
+  for (float& value : luminances) value = std::max(value - static_cast<float>(mean_of_all), 0.0f);
+  // What little rounding leaves of an even background is not sampled, either.
+  if (mean_over_sphere(width, height, luminances) < kMinUneven * mean_of_all) {
+    std::fill(luminances.begin(), luminances.end(), 0.0f);
+  }
+  table_ = PiecewiseConstantSphere(width, height, luminances, image);
+  even_ = kPiFloat * strength_ * static_cast<float>(mean_of_all - table_.mean());
 }
 
 // A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
@@ -112,60 +118,41 @@ bool Environment::Disc::contains(glm::vec3 w) const {
   return glm::dot(chord, chord) <= rim * rim;
 }
 
-glm::vec3 Environment::pixel(glm::vec3 direction) const {
-  const glm::dvec2 uv = to_latlong(glm::dvec3(turned(direction, -rotation_sine_, rotation_cosine_)));
-  const int width = image_->width, height = image_->height;
-  const double x = uv.x * width - 0.5, y = uv.y * height - 0.5;
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
-  const auto at = [&](int i, int j) {
-    const int row = std::clamp(j, 0, height - 1), column = (i % width + width) % width;
-    return image_
-        ->pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
-  };
-  const auto a = static_cast<float>(x - x0), b = static_cast<float>(y - y0);
-  return strength_ * ((1 - b) * ((1 - a) * at(x0, y0) + a * at(x0 + 1, y0)) +
-                      b * ((1 - a) * at(x0, y0 + 1) + a * at(x0 + 1, y0 + 1)));
-}
-
-glm::vec3 Environment::backdrop(glm::vec3 direction) const {
-  if (type_ == Type::Sky) return sky_->radiance(direction);
-  if (type_ == Type::Image) return pixel(direction);
-  const double share = gradient_share(direction.y);
-  return glm::vec3(bottom_ * (1 - share) + top_ * share);
-}
-
-glm::vec3 Environment::radiance(glm::vec3 direction) const {
-  glm::vec3 sum = backdrop(direction);
-  for (const Disc& disc : discs_) {
-    if (disc.contains(direction)) sum += disc.radiance;
-  }
-  return sum;
-}
-
-void Environment::set_gradient(std::size_t count, BackgroundRows& rows) const {
+void Environment::set_gradient(std::size_t count, DirectionRows& rows) const {
   for (int channel = 0; channel < 3; ++channel) {
     const double bottom = bottom_[channel], top = top_[channel];
     for (std::size_t i = 0; i < count; ++i) {
       const double share = gradient_share(rows.direction[1][i]);
-      rows.radiance[channel][i] = static_cast<float>(bottom * (1 - share) + top * share);
+      rows.light[i][channel] = static_cast<float>(bottom * (1 - share) + top * share);
     }
   }
 }
 
-void Environment::set_radiance(std::size_t count, BackgroundRows& rows) const {
-  // The colour of a gradient takes less time than a call.
-  if (type_ == Type::Gradient && discs_.empty()) return set_gradient(count, rows);
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 found = radiance({rows.direction[0][i], rows.direction[1][i], rows.direction[2][i]});
-    for (int channel = 0; channel < 3; ++channel) rows.radiance[channel][i] = found[channel];
+void Environment::set_sky(std::size_t count, DirectionRows& rows) const {
+  for (std::size_t i = 0; i < count; ++i) rows.set_radiance(i, sky_->radiance(rows.direction_of(i)));
+}
+
+void Environment::add_discs(std::size_t count, DirectionRows& rows) const {
+  for (const Disc& disc : discs_) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (disc.contains(rows.direction_of(i))) rows.set_radiance(i, rows.radiance(i) + disc.radiance);
+    }
   }
 }
 
-// Returns 0 for a gradient, which is so even that BSDF sampling finds its light with less noise
-// (docs/explanation/light.md).
-float Environment::mean() const {
-  return type_ == Type::Gradient ? 0 : strength_ * static_cast<float>(table_.mean());
+void Environment::look_up(std::size_t count, DirectionRows& rows) const {
+  if (type_ != Type::Gradient) table_.look_up(count, rows);
+  complete(count, rows);
 }
+
+// Sets the radiance that is not in the table.
+void Environment::complete(std::size_t count, DirectionRows& rows) const {
+  if (type_ == Type::Gradient) set_gradient(count, rows);
+  if (type_ == Type::Sky) set_sky(count, rows);
+  if (!discs_.empty()) add_discs(count, rows);
+}
+
+float Environment::mean() const { return strength_ * static_cast<float>(table_.mean()); }
 
 float Environment::importance(const Disc& disc, const LightSampleContext& context) const {
   const float cosine = glm::dot(context.normal, glm::vec3(disc.direction));
@@ -180,7 +167,7 @@ float Environment::importance(const LightSampleContext& context) const {
   return sum;
 }
 
-glm::vec3 Environment::sample(const LightSampleContext& context, float choice, glm::vec2 u) const {
+const Environment::Disc* Environment::choose_disc(const LightSampleContext& context, float choice) const {
   float rest = choice * importance(context) - kPiFloat * mean();
   const Disc* chosen = nullptr;
   for (const Disc& disc : discs_) {
@@ -189,17 +176,44 @@ glm::vec3 Environment::sample(const LightSampleContext& context, float choice, g
     if (own > 0) chosen = &disc;
     rest -= own;
   }
-  if (chosen == nullptr) return turned(table_.sample(u), rotation_sine_, rotation_cosine_);
-  const double below = static_cast<double>(u.x) * chosen->height, sine = std::sqrt(below * (2 - below));
+  return chosen;
+}
+
+glm::vec3 Environment::Disc::sample(glm::vec2 u) const {
+  const double below = static_cast<double>(u.x) * height, sine = std::sqrt(below * (2 - below));
   const SinCos turn = sincos_turn(u.y);
-  const FrameOf<double> frame(chosen->direction);
+  const FrameOf<double> frame(direction);
   return frame.to_world({sine * static_cast<double>(turn.cos), sine * static_cast<double>(turn.sin), 1 - below});
 }
 
-float Environment::pdf(const LightSampleContext& context, glm::vec3 direction) const {
+void Environment::sample(std::size_t count, EnvironmentSamples& samples) const {
+  if (mean() > 0) table_.sample(count, samples.u, samples.v, samples.rows);
+  if (!discs_.empty()) aim_at_discs(count, samples);
+  complete(count, samples.rows);
+}
+
+void Environment::aim_at_discs(std::size_t count, EnvironmentSamples& samples) const {
+  DirectionRows aimed;
+  std::array<std::size_t, DirectionRows::kCapacity> place;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Disc* disc = choose_disc(*samples.context[i], samples.choice[i]);
+    if (disc == nullptr) continue;
+    aimed.set_direction(chosen, disc->sample({samples.u[i], samples.v[i]}));
+    place[chosen++] = i;
+  }
+  if (type_ != Type::Gradient) table_.look_up(chosen, aimed);
+  for (std::size_t k = 0; k < chosen; ++k) {
+    samples.rows.set_direction(place[k], aimed.direction_of(k));
+    std::copy_n(aimed.light[k], 4, samples.rows.light[place[k]]);
+  }
+}
+
+float Environment::pdf(const LightSampleContext& context, glm::vec3 direction, float density) const {
+  if (discs_.empty()) return density;
   const float all = importance(context);
   if (!(all > 0)) return 0;
-  float sum = mean() > 0 ? kPiFloat * mean() * table_.pdf(turned(direction, -rotation_sine_, rotation_cosine_)) : 0;
+  float sum = kPiFloat * mean() * density;
   for (const Disc& disc : discs_) {
     if (!disc.contains(direction)) continue;
     sum += importance(disc, context) / (2 * kPiFloat * static_cast<float>(disc.height));

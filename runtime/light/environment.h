@@ -1,9 +1,11 @@
 // The environment beyond the scene: a background all around, with discs before it, those of the sun and of
 // directional lights with an angle. Gives the radiance of rays that leave the scene, and samples directions by it.
 //
-// The background is sampled by its luminance: a sky by a table of the means of its cells, an image by its pixels as
-// filtering spreads them, a gradient not at all. A disc is sampled uniformly. sample() chooses the background or a
-// disc by estimates of their irradiance, and pdf() covers all of them together.
+// The background is sampled by what its luminance exceeds the mean by: a sky by a table of the means of its cells, an
+// image by its pixels as filtering spreads them, a gradient not at all. The even rest is so even that BSDF sampling
+// finds its light with less noise (Karlik et al., "MIS Compensation: Optimizing Sampling Techniques in Multiple
+// Importance Sampling", ACM Transactions on Graphics 38, 2019). A disc is sampled uniformly. sample() chooses the
+// background or a disc by estimates of their irradiance, and pdf() covers all of them together.
 // Tested by: tests/runtime/light/environment_test.cpp
 #pragma once
 
@@ -21,10 +23,12 @@
 
 namespace fathom::runtime {
 
-// Rays that leave the scene, [ray]: their directions, weights and the radiance that they find.
-struct BackgroundRows {
-  static constexpr std::size_t kCapacity = 64;
-  float direction[3][kCapacity], weight[kCapacity], radiance[3][kCapacity];
+// Samples of the environment for shading points, [sample]. The densities in `rows` are of the background alone.
+struct EnvironmentSamples {
+  static constexpr std::size_t kCapacity = DirectionRows::kCapacity;
+  const LightSampleContext* context[kCapacity];
+  alignas(64) float choice[kCapacity], u[kCapacity] = {}, v[kCapacity] = {};
+  DirectionRows rows;
 };
 
 class Environment {
@@ -32,16 +36,20 @@ class Environment {
   // `image` is the image that the scene's background names, if it names one.
   Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image);
 
-  glm::vec3 radiance(glm::vec3 direction) const;  // of rays that leave the scene
-  // Sets the radiance of the first `count` rows to that of their directions.
-  void set_radiance(std::size_t count, BackgroundRows& rows) const;
+  // Sets the radiance of the first `count` rows to that of rays that leave the scene in their directions, and their
+  // density to that of samples of the background alone.
+  void look_up(std::size_t count, DirectionRows& rows) const;
   bool emits() const { return mean() > 0 || !discs_.empty(); }  // true if there is light to sample
   // Returns an estimate of the irradiance by the sampled light, as luminance. 0 only if none of that light arrives.
   float importance(const LightSampleContext& context) const;
-  // Samples a direction by three numbers in [0,1). Requires importance() > 0. pdf() returns its density per solid
-  // angle.
-  glm::vec3 sample(const LightSampleContext& context, float choice, glm::vec2 u) const;
-  float pdf(const LightSampleContext& context, glm::vec3 direction) const;
+  // True if importance() is the same everywhere.
+  bool is_uniform() const { return discs_.empty(); }
+  // Returns the same estimate for the light of the background that is too even to be sampled.
+  float even_importance() const { return even_; }
+  // Samples directions by three numbers in [0,1) each, with their radiance. Requires importance() > 0.
+  void sample(std::size_t count, EnvironmentSamples& samples) const;
+  // Returns the density per solid angle with which sample() samples a direction, given its density as of look_up().
+  float pdf(const LightSampleContext& context, glm::vec3 direction, float density) const;
 
  private:
   struct Disc {
@@ -53,23 +61,29 @@ class Environment {
     float irradiance;  // luminance, on a surface that faces the disc
 
     bool contains(glm::vec3 w) const;
+    glm::vec3 sample(glm::vec2 u) const;  // uniformly
   };
   using Type = compiler::Background::Type;
 
   void add_disc(glm::dvec3 direction, double degrees, glm::vec3 irradiance);
-  glm::vec3 backdrop(glm::vec3 direction) const;  // without discs
-  void set_gradient(std::size_t count, BackgroundRows& rows) const;
-  glm::vec3 pixel(glm::vec3 direction) const;
-  float mean() const;  // luminance of the backdrop if it is sampled, otherwise 0
+  void complete(std::size_t count, DirectionRows& rows) const;
+  void aim_at_discs(std::size_t count, EnvironmentSamples& samples) const;
+  void set_gradient(std::size_t count, DirectionRows& rows) const;
+  void set_sky(std::size_t count, DirectionRows& rows) const;
+  void add_discs(std::size_t count, DirectionRows& rows) const;
+  // Returns the disc that the number chooses, or null for the background.
+  const Disc* choose_disc(const LightSampleContext& context, float choice) const;
+  // Makes the table of the background's luminances.
+  void set_table(int width, int height, std::vector<float> luminances, const PiecewiseConstantSphere::Image& image);
+  float mean() const;  // luminance of the background's light that is sampled
   float importance(const Disc& disc, const LightSampleContext& context) const;
 
   Type type_;
-  glm::dvec3 bottom_, top_;  // gradient
-  std::optional<Sky> sky_;   // sky
-  std::shared_ptr<const EnvironmentImage> image_;
-  double rotation_sine_ = 0, rotation_cosine_ = 1;  // of the image's rotation
-  float strength_ = 1;                      // of the image
-  PiecewiseConstantSphere table_;           // of a sky or an image, in the image's own directions
+  glm::dvec3 bottom_, top_;        // gradient
+  std::optional<Sky> sky_;         // sky
+  float strength_ = 1;             // of the image
+  float even_ = 0;                 // irradiance by the even part of the sky or image, as luminance
+  PiecewiseConstantSphere table_;  // of a sky, or an image and its radiance
   std::vector<Disc> discs_;
 };
 

@@ -1,6 +1,7 @@
 #include "runtime/light/light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -49,6 +50,7 @@ Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const Envir
   for (const compiler::Light& light : scene.lights) add_delta(light, bounds);
   tree_ = LightTree(std::move(bounds));
   all_near_ = directional_.empty() && !environment_.emits();
+  if (tree_.empty() && directional_.empty() && environment_.is_uniform()) everywhere_ = selection_probabilities({});
   find_touching();
 }
 
@@ -121,20 +123,54 @@ float Lights::directional_importance(const DeltaLight& delta, const LightSampleC
 }
 
 Lights::SelectionProbabilities Lights::selection_probabilities(const LightSampleContext& context) const {
+  if (everywhere_) return *everywhere_;
   if (all_near_) return {1, 0, 0};
   const float near = tree_.total_importance(context), environment = environment_.importance(context);
   float directional = 0;
   for (const DeltaLight& delta : directional_) directional += directional_importance(delta, context);
-  const float beyond = environment + directional;
-  if (!(near + beyond > 0)) return {0, 0, 0};
+  if (!(near + environment + directional > 0)) return {0, 0, 0};
+  const float beyond = environment + environment_.even_importance() + directional;
   float share = near / (near + beyond);
   if (near > 0 && beyond > 0) share = std::clamp(share, kMinLightShare, 1 - kMinLightShare);
   const float rest = beyond > 0 ? (1 - share) / beyond : 0;
   return {share, rest * environment, rest * directional};
 }
 
-LightSample Lights::sample(const LightSampleContext& context, float choice, glm::vec2 u) const {
-  const SelectionProbabilities share = selection_probabilities(context);
+// Samples of the environment are drawn together.
+void Lights::sample(const LightQueries& queries, std::span<LightSample> samples) const {
+  EnvironmentSamples beyond;
+  std::array<std::size_t, EnvironmentSamples::kCapacity> place;
+  std::array<float, EnvironmentSamples::kCapacity> probability;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < queries.contexts.size(); ++i) {
+    if (!queries.active[i]) continue;
+    const LightSampleContext& context = queries.contexts[i];
+    const SelectionProbabilities share = selection_probabilities(context);
+    const float rest = queries.choice[i] - share.near;
+    if (rest < 0 || rest >= share.environment) {
+      samples[i] = sample_others(context, share, queries.choice[i], {queries.u[i], queries.v[i]});
+      continue;
+    }
+    beyond.context[count] = &context;
+    beyond.choice[count] = std::min(rest / share.environment, 0x1.fffffep-1f);
+    beyond.u[count] = queries.u[i];
+    beyond.v[count] = queries.v[i];
+    probability[count] = share.environment;
+    place[count++] = i;
+  }
+  if (count == 0) return;
+  environment_.sample(count, beyond);
+  const DirectionRows& rows = beyond.rows;
+  for (std::size_t k = 0; k < count; ++k) {
+    LightSample& out = samples[place[k]] = {};
+    out.wi = rows.direction_of(k);
+    out.radiance = rows.radiance(k);
+    out.pdf = probability[k] * environment_.pdf(*beyond.context[k], out.wi, rows.density(k));
+  }
+}
+
+LightSample Lights::sample_others(const LightSampleContext& context, const SelectionProbabilities& share,
+                                  float choice, glm::vec2 u) const {
   if (choice < share.near) {
     const std::optional<LightTree::SampledLight> chosen =
         tree_.sample(context, std::min(choice / share.near, 0x1.fffffep-1f));
@@ -145,16 +181,9 @@ LightSample Lights::sample(const LightSampleContext& context, float choice, glm:
     out.pdf *= share.near * chosen->pmf;
     return out;
   }
-  choice -= share.near;
-  if (share.environment > 0 && (choice < share.environment || !(share.directional > 0))) {
-    LightSample out;
-    out.wi = environment_.sample(context, std::min(choice / share.environment, 0x1.fffffep-1f), u);
-    out.radiance = environment_.radiance(out.wi);
-    out.pdf = share.environment * environment_.pdf(context, out.wi);
-    return out;
-  }
-  if (!(share.directional > 0)) return {};
-  LightSample out = sample_directional(context, std::max(0.0f, choice - share.environment) / share.directional);
+  const float rest = choice - share.near - share.environment;
+  if (!(rest < share.directional)) return {};  // the even part of the background is left to BSDF sampling
+  LightSample out = sample_directional(context, std::max(0.0f, rest) / share.directional);
   out.pdf *= share.directional;
   return out;
 }
@@ -220,9 +249,9 @@ float Lights::pdf_of_hit(const LightSampleContext& context, std::uint32_t surfac
   return selection_probabilities(context).near * tree_.pmf(context, *area_light) * static_cast<float>(pdf);
 }
 
-float Lights::pdf_of_background(const LightSampleContext& context, glm::vec3 direction) const {
+float Lights::pdf_of_background(const LightSampleContext& context, glm::vec3 direction, float density) const {
   const float share = selection_probabilities(context).environment;
-  return share > 0 ? share * environment_.pdf(context, direction) : 0;
+  return share > 0 ? share * environment_.pdf(context, direction, density) : 0;
 }
 
 }  // namespace fathom::runtime

@@ -21,6 +21,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/scene/compiled_scene.h"
@@ -38,10 +39,18 @@ struct LightSample {
   double distance = std::numeric_limits<double>::infinity();  // to the sampled point; infinite beyond the scene
   // Arriving radiance if nothing is in the way. Delta light: irradiance of a surface that faces the light.
   glm::vec3 radiance{0};
-  float pdf = 0;          // per solid angle; delta: the probability of this light; 0: no sample
-  bool delta = false;     // no ray hits this light
-  float light_cosine = 1;                                       // area lights: cosine between their normal and -wi
+  float pdf = 0;           // per solid angle; delta: the probability of this light; 0: no sample
+  bool delta = false;      // no ray hits this light
+  float light_cosine = 1;  // area lights: cosine between their normal and -wi
   std::uint32_t material = kNoMaterial, surface = kNoMaterial;  // area lights: indices into the scene's tables
+};
+
+// Shading points, and three numbers in [0,1) for each, [point].
+struct LightQueries {
+  static constexpr std::size_t kCapacity = EnvironmentSamples::kCapacity;
+  std::span<const LightSampleContext> contexts;
+  std::span<const float> choice, u, v;
+  std::span<const bool> active;  // false: the point's sample stays as it is
 };
 
 class Lights {
@@ -56,18 +65,20 @@ class Lights {
   // True if there are lights that no ray hits.
   bool has_delta_lights() const { return !near_delta_lights_.empty() || !directional_.empty(); }
 
-  // Samples a light by three numbers in [0,1). `distance` ends on the surface of the area light, which is part of the
-  // field, too. A shadow ray must stop short of that surface, by more at grazing angles (light_cosine).
-  LightSample sample(const LightSampleContext& context, float choice, glm::vec2 u) const;
+  // Samples a light for each of up to LightQueries::kCapacity shading points. `distance` ends on the surface of the
+  // area light, which is part of the field, too. A shadow ray must stop short of that surface, by more at grazing
+  // angles (light_cosine).
+  void sample(const LightQueries& queries, std::span<LightSample> samples) const;
 
   // Returns the density with which sample() samples the direction to `hit`, a point on surface number `surface` that
   // a ray from `context` found. 0 if the point is on no area light, or on a part that is not sampled.
   float pdf_of_hit(const LightSampleContext& context, std::uint32_t surface, glm::dvec3 hit) const;
 
-  glm::vec3 background(glm::vec3 direction) const { return environment_.radiance(direction); }
-  // Sets the radiance of the first `count` rows.
-  void set_background(std::size_t count, BackgroundRows& rows) const { environment_.set_radiance(count, rows); }
-  float pdf_of_background(const LightSampleContext& context, glm::vec3 direction) const;
+  // As Environment::look_up().
+  void look_up_background(std::size_t count, DirectionRows& rows) const { environment_.look_up(count, rows); }
+  // Returns the density with which sample() samples a direction beyond the scene, given its density as of
+  // look_up_background().
+  float pdf_of_background(const LightSampleContext& context, glm::vec3 direction, float density) const;
 
  private:
   // A point or spot light, or a directional light without an angle.
@@ -81,7 +92,7 @@ class Lights {
     bool touches_earlier;  // its bounding ball meets that of an earlier area light
   };
   struct SelectionProbabilities {
-    float near, environment, directional;  // probabilities of sampling them
+    float near, environment, directional;  // probabilities of sampling them; the rest is no sample
   };
 
   void add_area_lights(const compiler::CompiledScene& scene, std::vector<LightBounds>& bounds);
@@ -92,6 +103,9 @@ class Lights {
   std::optional<std::uint32_t> area_light_at(glm::dvec3 place) const;
   float directional_importance(const DeltaLight& delta, const LightSampleContext& context) const;
   SelectionProbabilities selection_probabilities(const LightSampleContext& context) const;
+  // Samples lights other than the environment.
+  LightSample sample_others(const LightSampleContext& context, const SelectionProbabilities& share, float choice,
+                            glm::vec2 u) const;
   LightSample sample_area_light(const LightSampleContext& context, std::uint32_t area_light, glm::vec2 u) const;
   LightSample sample_delta(const LightSampleContext& context, const DeltaLight& delta) const;
   LightSample sample_directional(const LightSampleContext& context, float choice) const;
@@ -102,7 +116,8 @@ class Lights {
   std::vector<DeltaLight> near_delta_lights_;  // in the tree numbered after the area lights
   std::vector<DeltaLight> directional_;
   LightTree tree_;
-  bool all_near_ = false;  // no light comes from beyond the scene
+  bool all_near_ = false;                             // no light comes from beyond the scene
+  std::optional<SelectionProbabilities> everywhere_;  // if they are the same everywhere
 };
 
 }  // namespace fathom::runtime

@@ -101,10 +101,10 @@ void sample_lights(const RenderContext& context, VertexBatch& batch) {
     batch.samplers.take_numbers(batch.count);
   }
   batch.samplers.draw_pairs(batch.count, u.data(), v.data());
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    if (!may_sample_light(context, batch, i)) continue;
-    batch.light_sample[i] = lights.sample(batch.light_context[i], choice[i], {u[i], v[i]});
-  }
+  VertexRow<bool> active;
+  for (std::size_t i = 0; i < batch.count; ++i) active[i] = may_sample_light(context, batch, i);
+  const auto first = [&](const auto& row) { return std::span(row).first(batch.count); };
+  lights.sample({first(batch.light_context), first(choice), first(u), first(v), first(active)}, batch.light_sample);
 }
 
 void sample_direct_light(const RenderContext& context, VertexBatch& batch, RealScratch& scratch) {

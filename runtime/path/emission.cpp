@@ -10,11 +10,12 @@
 namespace fathom::runtime {
 namespace {
 
-// Returns the weight of the background's light that a path's ray has found.
-float background_weight(const RenderContext& context, const PathState& path) {
+// Returns the weight of the background's light that a path's ray has found, given the density of its direction as of
+// Lights::look_up_background().
+float background_weight(const RenderContext& context, const PathState& path, float density) {
   float light_pdf = 0;
   if (path.bsdf_pdf > 0 && !context.lights.empty()) {
-    light_pdf = context.lights.pdf_of_background(path.bounce_context, glm::vec3(path.ray.direction));
+    light_pdf = context.lights.pdf_of_background(path.bounce_context, glm::vec3(path.ray.direction), density);
   }
   return bsdf_mis_weight(context.settings.light_sampling, path.bsdf_pdf, light_pdf);
 }
@@ -47,26 +48,24 @@ void add_emission(const RenderContext& context, VertexBatch& batch) {
 }
 
 void add_background(const RenderContext& context, std::span<const RayHit> ray_hits, std::span<PathState> paths) {
-  BackgroundRows rows;
-  std::array<PathState*, BackgroundRows::kCapacity> seeing;
+  DirectionRows rows;
+  std::array<PathState*, DirectionRows::kCapacity> seeing;
   const auto add = [&](std::size_t count) {
-    context.lights.set_background(count, rows);
+    context.lights.look_up_background(count, rows);
     for (std::size_t i = 0; i < count; ++i) {
       PathState& path = *seeing[i];
-      const glm::vec3 radiance(rows.radiance[0][i], rows.radiance[1][i], rows.radiance[2][i]);
-      add_radiance(context.settings, path, path.throughput * radiance * rows.weight[i], path.bounces);
+      const float weight = background_weight(context, path, rows.density(i));
+      if (!(weight > 0)) continue;
+      add_radiance(context.settings, path, path.throughput * rows.radiance(i) * weight, path.bounces);
     }
   };
   std::size_t count = 0;
   for (const RayHit& ray_hit : ray_hits) {
     PathState& path = paths[ray_hit.id];
     if (ray_hit.status == RayHit::Status::Invalid || path.medium.field != 0) continue;
-    const float weight = background_weight(context, path);
-    if (!(weight > 0)) continue;
     seeing[count] = &path;
-    rows.weight[count] = weight;
-    for (int axis = 0; axis < 3; ++axis) rows.direction[axis][count] = static_cast<float>(path.ray.direction[axis]);
-    if (++count == BackgroundRows::kCapacity) add(std::exchange(count, 0));
+    rows.set_direction(count, glm::vec3(path.ray.direction));
+    if (++count == DirectionRows::kCapacity) add(std::exchange(count, 0));
   }
   add(count);
 }

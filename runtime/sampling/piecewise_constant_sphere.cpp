@@ -1,10 +1,14 @@
 #include "runtime/sampling/piecewise_constant_sphere.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
-#include "runtime/base/elementary.h"
+#include "hwy/cache_control.h"
+#include "runtime/sampling/piecewise_constant_sphere_lanes.h"
 #include "vm/number/real.h"
 #include "vm/program/check.h"
 
@@ -13,22 +17,60 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Finds u among running sums that end at 1. Returns the index, and how far u lies into that interval, in [0,1].
-template <class T>
-std::pair<std::size_t, double> find(std::span<const T> sums, double u) {
-  const auto above = std::upper_bound(sums.begin(), sums.end() - 1, u, [](double a, T b) { return a < double(b); });
-  const auto index = static_cast<std::size_t>(above - sums.begin());
-  const double begin = index == 0 ? 0.0 : double(sums[index - 1]), size = double(sums[index]) - begin;
-  return {index, size > 0 ? std::clamp((u - begin) / size, 0.0, 1.0) : 0.5};
+RunningSums sums_of(std::size_t rows, std::size_t size, std::size_t bins) {
+  RunningSums out{.size = size, .bins = bins, .sums = {}, .guide = {}};
+  out.sums.reserve(rows * (size + 1));
+  out.guide.reserve(rows * (bins + 1));
+  return out;
 }
 
-template <class T>
-double share(std::span<const T> sums, std::size_t index) {
-  return double(sums[index]) - (index == 0 ? 0.0 : double(sums[index - 1]));
+// Adds a row of cells with these weights, whose sum is `total`. Replaces the weights by the shares that the rounded
+// sums give.
+void add_row(std::span<double> weights, double total, RunningSums& out) {
+  const std::size_t begin = out.sums.size();
+  double running = 0;
+  out.sums.push_back(0);
+  for (double& weight : weights) {
+    running += weight;
+    out.sums.push_back(total > 0 ? static_cast<float>(running / total) : 1.0f);
+    weight = static_cast<double>(out.sums.back()) - static_cast<double>(out.sums[out.sums.size() - 2]);
+  }
+  const float* sums = &out.sums[begin];
+  std::uint32_t cell = 0;
+  for (std::size_t bin = 0; bin <= out.bins; ++bin) {
+    // No number in [0,1) lies at the end of the last bin.
+    const float u = std::min(static_cast<float>(bin) / static_cast<float>(out.bins), 0x1.fffffep-1f);
+    while (cell + 1 < out.size && sums[cell + 1] <= u) ++cell;
+    out.guide.push_back(cell);
+  }
 }
 
-std::size_t cell(double place, std::size_t count) {
-  return std::min(count - 1, static_cast<std::size_t>(std::max(0.0, place * static_cast<double>(count))));
+// Returns the guide's entry for u in [0,1) in a row.
+const std::uint32_t* guide_at(const RunningSums& in, std::size_t row, float u) {
+  return &in.guide[row * (in.bins + 1) + static_cast<std::size_t>(u * static_cast<float>(in.bins))];
+}
+const float* sums_at(const RunningSums& in, std::size_t row) { return &in.sums[row * (in.size + 1)]; }
+
+struct FoundCell {
+  std::size_t cell;
+  float share;  // how far u lies into the cell, in [0,1]
+};
+
+FoundCell find(const float* sums, const std::uint32_t* guide, float u) {
+  std::size_t low = guide[0], high = guide[1];
+  while (low < high) {
+    const std::size_t middle = (low + high + 1) / 2;
+    const bool above = u < sums[middle];
+    low = above ? low : middle;
+    high = above ? middle - 1 : high;
+  }
+  return {low, std::clamp((u - sums[low]) / (sums[low + 1] - sums[low]), 0.0f, 1.0f)};
+}
+
+// Returns 1 - |cos| of the angle, where `from_above` is true from the pole at 0, else from that at pi.
+double pole_distance(double angle, bool from_above) {
+  const double sine = vm::real::sin((from_above ? angle : std::numbers::pi - angle) / 2);
+  return 2 * sine * sine;
 }
 
 }  // namespace
@@ -44,51 +86,143 @@ glm::dvec3 from_latlong(glm::dvec2 uv) {
   return {-sine * vm::real::sin(turn), vm::real::cos(polar), sine * vm::real::cos(turn)};
 }
 
-PiecewiseConstantSphere::PiecewiseConstantSphere(int width, int height, std::span<const float> values)
-    : width_(static_cast<std::size_t>(width)), height_(static_cast<std::size_t>(height)) {
-  CHECK(width > 0 && height > 0 && values.size() == width_ * height_,
-        "a table of directions has width x height cells");
-  for (std::size_t r = 0; r <= height_; ++r) {
-    heights_.push_back(vm::real::cos(std::numbers::pi * static_cast<double>(r) / static_cast<double>(height_)));
+double mean_over_sphere(int width, int height, std::span<const float> values) {
+  const std::size_t columns = static_cast<std::size_t>(width);
+  double sum = 0, above = 1;  // the height of the row's upper end
+  for (int row = 0; row < height; ++row) {
+    const std::span<const float> of_row = values.subspan(static_cast<std::size_t>(row) * columns, columns);
+    const double below = vm::real::cos(std::numbers::pi * (row + 1) / height);
+    sum += (above - below) / 2 * std::accumulate(of_row.begin(), of_row.end(), 0.0) / width;
+    above = below;
   }
-  columns_.resize(values.size());
+  return sum;
+}
+
+PiecewiseConstantSphere::PiecewiseConstantSphere(int width, int height, std::span<const float> values,
+                                                 const Image& image) {
+  const std::size_t cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  CHECK(width > 0 && height > 0 && values.size() == cells && (image.pixels.empty() || image.pixels.size() == cells),
+        "a table of directions has width x height cells");
+  tables_.width = width;
+  tables_.height = height;
+  tables_.turn = static_cast<float>(std::ceil(image.turn) - image.turn);
+  for (int row = 0; row < height; ++row) {
+    const bool above = row < rows_above(height);
+    const double begin = pole_distance(std::numbers::pi * row / height, above);
+    const double end = pole_distance(std::numbers::pi * (row + 1) / height, above);
+    tables_.pole_distance.push_back(static_cast<float>(begin));
+    tables_.pole_step.push_back(static_cast<float>(end - begin));
+  }
+  tables_.cells.resize((static_cast<std::size_t>(width) + 2) * (static_cast<std::size_t>(height) + 2));
+  set_densities(values);
+  if (!image.pixels.empty()) set_pixels(image);
+  set_border();
+}
+
+SphereCell& PiecewiseConstantSphere::cell_at(int row, int column) {
+  const std::size_t line = static_cast<std::size_t>(tables_.width) + 2;
+  return tables_.cells[static_cast<std::size_t>(row + 1) * line + static_cast<std::size_t>(column + 1)];
+}
+
+void PiecewiseConstantSphere::set_densities(std::span<const float> values) {
+  const int width = tables_.width, height = tables_.height;
+  const std::size_t columns = static_cast<std::size_t>(width);
+  const auto solid_angle = [&](int row) {  // of one cell
+    return kTurn / width * std::abs(static_cast<double>(tables_.pole_step[static_cast<std::size_t>(row)]));
+  };
+  std::vector<double> totals, rows, weights(columns);
   double sum = 0;
-  for (std::size_t r = 0; r < height_; ++r) {
-    double row = 0;
-    for (std::size_t c = 0; c < width_; ++c) row += static_cast<double>(values[r * width_ + c]);
-    double running = 0;
-    for (std::size_t c = 0; c < width_; ++c) {
-      running += static_cast<double>(values[r * width_ + c]);
-      columns_[r * width_ + c] = row > 0 ? static_cast<float>(running / row) : 1.0f;
-    }
-    sum += row * solid_angle(r);
-    rows_.push_back(sum);
+  for (int row = 0; row < height; ++row) {
+    const std::span<const float> of_row = values.subspan(static_cast<std::size_t>(row) * columns, columns);
+    totals.push_back(std::accumulate(of_row.begin(), of_row.end(), 0.0));
+    rows.push_back(totals.back() * solid_angle(row));
+    sum += rows.back();
   }
   mean_ = sum / (2 * kTurn);
-  for (double& running : rows_) running = sum > 0 ? running / sum : 0;
+  if (!(mean_ > 0)) return;
+  // The rows' guide leaves few searches. One of a quarter of the columns' cells leaves two steps, in little memory.
+  const auto power = [](std::size_t cells) { return std::bit_ceil(cells); };
+  tables_.rows = sums_of(1, rows.size(), 4 * power(rows.size()));
+  tables_.columns = sums_of(rows.size(), columns, std::max<std::size_t>(power(columns) / 4, 1));
+  add_row(rows, sum, tables_.rows);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const std::span<const float> of_row = values.subspan(row * columns, columns);
+    std::copy(of_row.begin(), of_row.end(), weights.begin());
+    add_row(weights, totals[row], tables_.columns);
+    const double scale = rows[row] / solid_angle(static_cast<int>(row));
+    for (std::size_t i = 0; i < columns; ++i) {
+      cell_at(static_cast<int>(row), static_cast<int>(i)).light[3] = static_cast<float>(weights[i] * scale);
+    }
+  }
 }
 
-double PiecewiseConstantSphere::solid_angle(std::size_t row) const {
-  return kTurn / static_cast<double>(width_) * (heights_[row] - heights_[row + 1]);
+void PiecewiseConstantSphere::set_pixels(const Image& image) {
+  auto pixel = image.pixels.begin();
+  for (int row = 0; row < tables_.height; ++row) {
+    for (int column = 0; column < tables_.width; ++column, ++pixel) {
+      for (int channel = 0; channel < 3; ++channel) {
+        cell_at(row, column).light[channel] = image.scale * (*pixel)[channel];
+      }
+    }
+  }
 }
 
-glm::vec3 PiecewiseConstantSphere::sample(glm::vec2 u) const {
-  const auto [row, down] = find(std::span<const double>(rows_), static_cast<double>(u.y));
-  const auto [column, along] = find(std::span(columns_).subspan(row * width_, width_), static_cast<double>(u.x));
-  const double y = heights_[row] + down * (heights_[row + 1] - heights_[row]);
-  const double sine = std::sqrt(std::max(0.0, 1 - y * y));
-  const SinCos turn =
-      sincos_turn(static_cast<float>((static_cast<double>(column) + along) / static_cast<double>(width_)));
-  return {-sine * static_cast<double>(turn.sin), y, sine * static_cast<double>(turn.cos)};
+void PiecewiseConstantSphere::set_border() {
+  const int width = tables_.width, height = tables_.height;
+  for (int row = 0; row < height; ++row) {
+    cell_at(row, -1) = cell_at(row, width - 1);
+    cell_at(row, width) = cell_at(row, 0);
+  }
+  for (int column = -1; column <= width; ++column) {
+    cell_at(-1, column) = cell_at(0, column);
+    cell_at(height, column) = cell_at(height - 1, column);
+  }
 }
 
-float PiecewiseConstantSphere::pdf(glm::vec3 direction) const {
-  if (!(mean_ > 0)) return 0;
-  const glm::dvec2 uv = to_latlong(glm::dvec3(direction));
-  const std::size_t row = cell(uv.y, height_), column = cell(uv.x, width_);
-  const double chance =
-      share(std::span<const double>(rows_), row) * share(std::span(columns_).subspan(row * width_, width_), column);
-  return static_cast<float>(chance / solid_angle(row));
+// Of a large image hardly anything is in the cache. All that the rays need is therefore asked for first.
+void PiecewiseConstantSphere::sample(std::size_t count, const float* u, const float* v, DirectionRows& rows) const {
+  const auto width = static_cast<float>(tables_.width);
+  const auto columns = static_cast<std::size_t>(tables_.width);
+  const auto above = static_cast<std::size_t>(rows_above(tables_.height));
+  std::array<FoundCell, DirectionRows::kCapacity> row;
+  std::array<const std::uint32_t*, DirectionRows::kCapacity> guide;
+  std::array<std::int32_t, DirectionRows::kCapacity> own;
+  for (std::size_t i = 0; i < count; ++i) {
+    row[i] = find(tables_.rows.sums.data(), guide_at(tables_.rows, 0, v[i]), v[i]);
+    guide[i] = guide_at(tables_.columns, row[i].cell, u[i]);
+    hwy::Prefetch(guide[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) hwy::Prefetch(sums_at(tables_.columns, row[i].cell) + guide[i][0]);
+  PolarRows polar;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t cell = row[i].cell;
+    const FoundCell column = find(sums_at(tables_.columns, cell), guide[i], u[i]);
+    polar.turns[i] = (static_cast<float>(column.cell) + column.share) / width + tables_.turn;
+    polar.distance[i] = tables_.pole_distance[cell] + row[i].share * tables_.pole_step[cell];
+    polar.pole[i] = cell < above ? 1.0f : -1.0f;
+    own[i] = static_cast<std::int32_t>((cell + 1) * (columns + 2) + column.cell + 1);
+  }
+  set_directions(count, polar, rows);
+  SphereCellRows places;
+  find_cells(tables_, count, rows, places);
+  std::copy_n(own.begin(), count, places.own);
+  interpolate(count, places, rows);
+}
+
+void PiecewiseConstantSphere::look_up(std::size_t count, DirectionRows& rows) const {
+  SphereCellRows places;
+  find_cells(tables_, count, rows, places);
+  interpolate(count, places, rows);
+}
+
+void PiecewiseConstantSphere::interpolate(std::size_t count, const SphereCellRows& places,
+                                          DirectionRows& rows) const {
+  const SphereCell* cells = tables_.cells.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    hwy::Prefetch(cells + places.cell[i]);
+    hwy::Prefetch(cells + places.cell[i] + tables_.width + 2);
+  }
+  interpolate_cells(tables_, count, places, rows);
 }
 
 }  // namespace fathom::runtime

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "runtime/light/environment.h"
 #include "runtime/light/environment_file.h"
 #include "runtime/sampling/sampler.h"
 
@@ -23,5 +24,48 @@ inline constexpr const char* kSky = R"("background": {"type": "sky", "elevation"
 // Environment map whose file is never read: tests use random_image() instead.
 inline constexpr const char* kPicture = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                         R"(/tests/data/one-pixel.hdr", "rotate": 40, "strength": 2})";
+
+// A direction with the light from there, and the density of its samples.
+struct Seen {
+  glm::vec3 direction, radiance;
+  float pdf;
+};
+
+inline Seen seen(const runtime::DirectionRows& rows, std::size_t i) {
+  return {rows.direction_of(i), rows.radiance(i), rows.density(i)};
+}
+
+// Looks in one direction. The density is per solid angle: of a table's samples, or of an environment's.
+template <class Background>
+Seen look(const Background& background, glm::vec3 direction) {
+  runtime::DirectionRows rows;
+  rows.set_direction(0, direction);
+  background.look_up(1, rows);
+  return seen(rows, 0);
+}
+inline float pdf_of(const runtime::Environment& environment, const runtime::LightSampleContext& context,
+                    glm::vec3 direction) {
+  return environment.pdf(context, direction, look(environment, direction).pdf);
+}
+
+// Samples one direction.
+inline Seen sample_of(const runtime::PiecewiseConstantSphere& table, glm::vec2 u) {
+  runtime::DirectionRows rows;
+  alignas(64) float x[runtime::DirectionRows::kCapacity] = {u.x}, y[runtime::DirectionRows::kCapacity] = {u.y};
+  table.sample(1, x, y, rows);
+  return seen(rows, 0);
+}
+inline Seen sample_of(const runtime::Environment& environment, const runtime::LightSampleContext& context,
+                      float choice, glm::vec2 u) {
+  runtime::EnvironmentSamples samples;
+  samples.context[0] = &context;
+  samples.choice[0] = choice;
+  samples.u[0] = u.x;
+  samples.v[0] = u.y;
+  environment.sample(1, samples);
+  Seen sample = seen(samples.rows, 0);
+  sample.pdf = environment.pdf(context, sample.direction, sample.pdf);
+  return sample;
+}
 
 }  // namespace fathom::test

@@ -16,7 +16,7 @@
 namespace fathom::runtime::environment_test {
 namespace {
 
-using test::kPicture, test::kSky, test::random_image;
+using test::kPicture, test::kSky, test::look, test::pdf_of, test::random_image, test::sample_of;
 
 const LightSampleContext kUp{{0, 0, 0}, {0, 1, 0}};
 const LightSampleContext kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
@@ -40,7 +40,8 @@ void check_density(const Environment& environment, const LightSampleContext& que
   for (int r = 0; r < kRows * kGrid; ++r) {
     for (int c = 0; c < kColumns * kGrid; ++c) {
       const glm::vec3 w = direction_at(1 - 2 * (r + 0.5) / (kRows * kGrid), (c + 0.5) / (kColumns * kGrid));
-      const double p = static_cast<double>(environment.pdf(query, w)) * 4 * M_PI / (kRows * kColumns * kGrid * kGrid);
+      const double p =
+          static_cast<double>(pdf_of(environment, query, w)) * 4 * M_PI / (kRows * kColumns * kGrid * kGrid);
       expected[static_cast<std::size_t>(r / kGrid * kColumns + c / kGrid)] += p;
       mass += p;
     }
@@ -50,7 +51,7 @@ void check_density(const Environment& environment, const LightSampleContext& que
   for (int i = 0; i < n; ++i) {
     Sampler sampler(5, static_cast<std::uint32_t>(i), 0, 0);
     const float choice = sampler.next();
-    const glm::vec3 w = environment.sample(query, choice, sampler.next2());
+    const glm::vec3 w = sample_of(environment, query, choice, sampler.next2()).direction;
     const double turn = std::atan2(w.z, w.x) / (2 * M_PI);
     const int r = std::clamp(static_cast<int>((1 - static_cast<double>(w.y)) / 2 * kRows), 0, kRows - 1);
     const int c = std::clamp(static_cast<int>((turn < 0 ? turn + 1 : turn) * kColumns), 0, kColumns - 1);
@@ -59,20 +60,30 @@ void check_density(const Environment& environment, const LightSampleContext& que
   CHECK(std::abs(test::chi_square_deviation(counts, expected, n)) < 5);
 }
 
-// Irradiance by sampling, with its standard error.
+// Irradiance by samples of the environment, with its standard error. Where a part of the light is left to BSDF
+// sampling, samples of the sphere find it (Veach's balance heuristic).
 struct Mean {
   double value, error;
 };
 Mean irradiance(const Environment& environment, const LightSampleContext& query, int n) {
   double sum = 0, squares = 0;
+  const double uniform = environment.even_importance() > 0 ? 1 / (4 * M_PI) : 0;
   for (int i = 0; i < n; ++i) {
     Sampler sampler(6, static_cast<std::uint32_t>(i), 0, 0);
-    const float choice = sampler.next();
-    const glm::vec3 w = environment.sample(query, choice, sampler.next2());
-    const auto cosine = static_cast<double>(glm::dot(w, query.normal));
-    const auto pdf = static_cast<double>(environment.pdf(query, w));
-    if (!(cosine > 0) || !(pdf > 0)) continue;
-    const double value = cosine * static_cast<double>(luminance(environment.radiance(w))) / pdf;
+    double value = 0;
+    const auto add = [&](const test::Seen& seen, float pdf) {
+      const auto cosine = static_cast<double>(glm::dot(seen.direction, query.normal));
+      const double both = static_cast<double>(pdf) + uniform;
+      if (cosine > 0) value += cosine * static_cast<double>(luminance(seen.radiance)) / both;
+    };
+    if (environment.importance(query) > 0) {
+      const float choice = sampler.next();
+      const test::Seen sample = sample_of(environment, query, choice, sampler.next2());
+      if (sample.pdf > 0) add(sample, sample.pdf);
+    }
+    const glm::vec2 u = sampler.next2();
+    const glm::vec3 w = direction_at(1 - 2 * static_cast<double>(u.x), static_cast<double>(u.y));
+    if (uniform > 0) add(look(environment, w), pdf_of(environment, query, w));
     sum += value;
     squares += value * value;
   }
@@ -94,8 +105,45 @@ TEST_CASE("environment: irradiance of gradients and pictures", "[light]") {
   CHECK(gradient.importance(kUp) == 0);
   auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
   const Environment picture(scene_with(kPicture), white);
+  CHECK(!picture.emits());  // nor has an even picture
   const Mean of_white = irradiance(picture, kAside, 40000);
   CHECK(std::abs(of_white.value - 2 * M_PI) < 4 * of_white.error);
+}
+
+TEST_CASE("environment: the light of a single bright pixel, as filtering spreads it", "[light]") {
+  for (const glm::ivec2 bright :
+       {glm::ivec2(200, 60), glm::ivec2(0, 128), glm::ivec2(300, 1), glm::ivec2(511, 254)}) {
+    CAPTURE(bright.x, bright.y);
+    constexpr int kWidth = 512, kHeight = 256;
+    EnvironmentImage image{kWidth, kHeight, std::vector<glm::vec3>(kWidth * kHeight, glm::vec3(0))};
+    image.pixels[static_cast<std::size_t>(bright.y * kWidth + bright.x)] = glm::vec3(1000);
+    const glm::vec3 up(from_latlong({(bright.x + 0.5) / kWidth, (bright.y + 0.5) / kHeight}));
+    // Bilinear weights are tents, two pixels wide.
+    double truth = 0;
+    constexpr int kSteps = 40;
+    for (int row = -kSteps; row < kSteps; ++row) {
+      for (int column = -kSteps; column < kSteps; ++column) {
+        const double x = (column + 0.5) / kSteps, y = (row + 0.5) / kSteps;
+        const double polar = M_PI * (bright.y + 0.5 + y) / kHeight;
+        if (polar < 0 || polar > M_PI) continue;
+        const double solid_angle = 2 * M_PI * M_PI / (kWidth * kHeight * kSteps * kSteps) * std::sin(polar);
+        const glm::dvec3 w = from_latlong({(bright.x + 0.5 + x) / kWidth, polar / M_PI});
+        const double across = 1 - std::abs(x);
+        // The outer rows are repeated towards the poles.
+        const bool beyond = (bright.y == 0 && y < 0) || (bright.y == kHeight - 1 && y > 0);
+        const double down = beyond ? 1 : 1 - std::abs(y);
+        truth += 1000 * 2 * across * down * solid_angle * glm::dot(w, glm::dvec3(up));
+      }
+    }
+    const Environment picture(scene_with(R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
+                                         R"(/tests/data/one-pixel.hdr", "strength": 2})"),
+                              std::make_shared<EnvironmentImage>(image));
+    const Mean e = irradiance(picture, {{0, 0, 0}, glm::normalize(up)}, 40000);
+    CAPTURE(e.value, truth, e.error);
+    CHECK(std::abs(e.value - truth) < 4 * e.error + 1e-4 * truth);
+    // The filter varies within the cells: the mean square of a tent over its mean in each cell is 1.44.
+    CHECK(e.error < 1.1 / std::sqrt(40000.0) * truth);
+  }
 }
 
 TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and it turns counter-clockwise",
@@ -107,7 +155,7 @@ TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and i
     const std::string settings = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                  R"(/tests/data/one-pixel.hdr", "rotate": )" +
                                  std::string(rotate) + "}";
-    return Environment(scene_with(settings), shared).radiance(glm::normalize(w)).x;
+    return look(Environment(scene_with(settings), shared), glm::normalize(w)).radiance.x;
   };
   // The pixel centres of the upper row: at 45 degrees of elevation, u = 1/8, 3/8, 5/8, 7/8.
   const float s = std::sqrt(0.5f);
@@ -127,11 +175,11 @@ TEST_CASE("environment: discs give the irradiance asked for, and rays see them",
   const Mean e = irradiance(lit, kUp, 20000);
   CHECK(e.value == Approx(2).epsilon(1e-3));
   const float sine = static_cast<float>(std::sin(5 * M_PI / 180));
-  CHECK(lit.radiance({0, 1, 0}).x == Approx(2 / (M_PI * static_cast<double>(sine * sine))).epsilon(1e-5));
-  CHECK(lit.radiance(glm::normalize(glm::vec3(0.99f * sine, std::sqrt(1 - sine * sine), 0))).x > 0);
-  CHECK(lit.radiance(glm::normalize(glm::vec3(1.02f * sine, std::sqrt(1 - sine * sine), 0))).x == 0);
-  CHECK(lit.pdf(kUp, {0, 1, 0}) == Approx(1 / (2 * M_PI * (1 - std::cos(5 * M_PI / 180)))).epsilon(1e-4));
-  CHECK(lit.pdf(kUp, {1, 0, 0}) == 0);
+  CHECK(look(lit, {0, 1, 0}).radiance.x == Approx(2 / (M_PI * static_cast<double>(sine * sine))).epsilon(1e-5));
+  CHECK(look(lit, glm::normalize(glm::vec3(0.99f * sine, std::sqrt(1 - sine * sine), 0))).radiance.x > 0);
+  CHECK(look(lit, glm::normalize(glm::vec3(1.02f * sine, std::sqrt(1 - sine * sine), 0))).radiance.x == 0);
+  CHECK(pdf_of(lit, kUp, {0, 1, 0}) == Approx(1 / (2 * M_PI * (1 - std::cos(5 * M_PI / 180)))).epsilon(1e-4));
+  CHECK(pdf_of(lit, kUp, {1, 0, 0}) == 0);
 }
 
 // The direction is not axis-aligned, so that the float rounding of directions varies.
@@ -157,9 +205,9 @@ TEST_CASE("environment: rays that hit a small disc find its irradiance", "[light
   float least = 0, most = 1e-3f;  // sines of two angles that bracket the disc's rim
   for (int i = 0; i < 40; ++i) {
     const float between = (least + most) / 2;
-    (lit.radiance(glm::normalize(middle + between * aside)).x > 0 ? least : most) = between;
+    (look(lit, glm::normalize(middle + between * aside)).radiance.x > 0 ? least : most) = between;
   }
-  CHECK(M_PI * least * least * lit.radiance(middle).x == Approx(2).epsilon(1e-3));
+  CHECK(M_PI * least * least * look(lit, middle).radiance.x == Approx(2).epsilon(1e-3));
 }
 
 TEST_CASE("environment: directions to a disc pass a chi-square test against their density", "[light]") {
@@ -173,9 +221,9 @@ TEST_CASE("environment: directions to a disc pass a chi-square test against thei
   for (const LightSampleContext& query : {kUp, kBoth}) {
     const auto sample = [&](Sampler& s) {
       const float choice = s.next();
-      return lit.sample(query, choice, s.next2());
+      return sample_of(lit, query, choice, s.next2()).direction;
     };
-    const auto pdf = [&](glm::vec3 w) { return static_cast<double>(lit.pdf(query, w)); };
+    const auto pdf = [&](glm::vec3 w) { return static_cast<double>(pdf_of(lit, query, w)); };
     const test::ChiSquare result = test::chi_square(sample, pdf, setup);
     CAPTURE(result.describe());
     CHECK(result.p > test::sidak(0.01, 2));
@@ -203,24 +251,42 @@ TEST_CASE("environment: a sky with its sun is sampled without bias", "[light]") 
   CHECK(e.error < 0.01 * level);
 }
 
-TEST_CASE("environment: the radiance of many rays is that of each", "[light]") {
+TEST_CASE("environment: many rays and many samples are each as one alone", "[light]") {
   const std::string sun = R"("lights": {"sun": {"type": "directional", "direction": [0, -1, 0.5], "angle": 5}})";
   const std::string gradient = R"("background": {"bottom": [0.1, 0.3, 0.7], "top": [1.5, 0.9, 0.2]})";
-  for (const std::string& settings : {gradient, gradient + "," + sun, std::string(kSky)}) {
+  for (const std::string& settings : {gradient, gradient + "," + sun, std::string(kSky), kSky + ("," + sun),
+                                      std::string(kPicture), kPicture + ("," + sun)}) {
     CAPTURE(settings);
-    const Environment environment(scene_with(settings), nullptr);
-    BackgroundRows rows;
-    const std::size_t count = BackgroundRows::kCapacity - 1;
-    const auto direction = [](std::size_t i) {
-      return direction_at(1 - 2 * static_cast<double>(i) / 62, 0.37 * static_cast<double>(i));
-    };
+    const Environment environment(scene_with(settings), random_image(12, 6));
+    const std::size_t count = DirectionRows::kCapacity - 1;
+    DirectionRows rows;
     for (std::size_t i = 0; i < count; ++i) {
-      for (int axis = 0; axis < 3; ++axis) rows.direction[axis][i] = direction(i)[axis];
+      rows.set_direction(i, direction_at(1 - 2 * static_cast<double>(i) / 62, 0.37 * static_cast<double>(i)));
     }
-    environment.set_radiance(count, rows);
+    environment.look_up(count, rows);
     for (std::size_t i = 0; i < count; ++i) {
-      const glm::vec3 expected = environment.radiance(direction(i));
-      CHECK(glm::vec3(rows.radiance[0][i], rows.radiance[1][i], rows.radiance[2][i]) == expected);
+      const test::Seen one = look(environment, test::seen(rows, i).direction);
+      CHECK(test::seen(rows, i).radiance == one.radiance);
+      CHECK(rows.density(i) == one.pdf);
+    }
+    if (!environment.emits()) continue;
+    EnvironmentSamples samples;
+    for (std::size_t i = 0; i < count; ++i) {
+      Sampler sampler(8, static_cast<std::uint32_t>(i), 0, 0);
+      samples.context[i] = i % 2 == 0 ? &kUp : &kBoth;
+      samples.choice[i] = sampler.next();
+      samples.u[i] = sampler.next();
+      samples.v[i] = sampler.next();
+    }
+    environment.sample(count, samples);
+    for (std::size_t i = 0; i < count; ++i) {
+      const LightSampleContext& context = *samples.context[i];
+      const test::Seen one = sample_of(environment, context, samples.choice[i], {samples.u[i], samples.v[i]});
+      const test::Seen sample = test::seen(samples.rows, i);
+      CHECK(sample.direction == one.direction);
+      CHECK(sample.radiance == one.radiance);
+      CHECK(environment.pdf(context, sample.direction, sample.pdf) == one.pdf);
+      CHECK(sample.radiance == look(environment, sample.direction).radiance);
     }
   }
 }
@@ -229,7 +295,7 @@ TEST_CASE("environment: nothing beyond the scene is nothing to sample", "[light]
   const Environment dark(scene_with(R"("film": {})"), nullptr);
   CHECK_FALSE(dark.emits());
   CHECK(dark.importance(kUp) == 0);
-  CHECK(dark.pdf(kUp, {0, 1, 0}) == 0);
+  CHECK(pdf_of(dark, kUp, {0, 1, 0}) == 0);
 }
 
 }  // namespace
