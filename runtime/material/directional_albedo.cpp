@@ -31,7 +31,21 @@ Stencil stencil_at(float place) {
   return {first, {b * c * d / -6, a * c * d / 2, a * b * d / -2, a * b * c / 6}};
 }
 
-float node_place(float cos) { return std::sqrt(std::sqrt(cos)) * (kNodes - 1); }
+float node_place(float cos) { return (std::sqrt(std::sqrt(cos)) + cos) * (0.5f * (kNodes - 1)); }
+
+// Returns the cosines at the nodes: the fourth powers of the roots of x + x^4 = 2 i / (kNodes - 1), by bisection.
+std::array<float, kNodes> node_cosines() {
+  std::array<float, kNodes> cosines;
+  for (int i = 0; i < kNodes; ++i) {
+    double low = 0, high = 1;
+    for (int step = 0; step < 60; ++step) {
+      const double x = (low + high) / 2;
+      (x + x * x * (x * x) < 2.0 * i / (kNodes - 1) ? low : high) = x;
+    }
+    cosines[static_cast<std::size_t>(i)] = static_cast<float>(i == 0 ? 0 : high * high * (high * high));
+  }
+  return cosines;
+}
 
 // Returns the weight of each node in the average: int w(x) 8 x^7 dx, x = cos^(1/4).
 std::array<float, kNodes> average_weights() {
@@ -39,7 +53,7 @@ std::array<float, kNodes> average_weights() {
   std::array<double, kNodes> sums{};
   for (int i = 0; i < kParts; ++i) {
     const double x = (i + 0.5) / kParts, x2 = x * x;
-    const Stencil s = stencil_at(static_cast<float>(x * (kNodes - 1)));
+    const Stencil s = stencil_at(node_place(static_cast<float>(x2 * x2)));
     for (std::size_t k = 0; k < 4; ++k) {
       sums[static_cast<std::size_t>(s.first) + k] += 8 * x2 * x2 * x2 * x / kParts * static_cast<double>(s.weight[k]);
     }
@@ -49,7 +63,7 @@ std::array<float, kNodes> average_weights() {
   return weights;
 }
 
-// Roughnesses have the same nodes as cosines: alpha^(1/4) = 0, 1/23 ... 1.
+// Roughnesses have the same nodes as cosines.
 float node_alpha(int i) { return std::max(DirectionalAlbedo::node_cos(i), kTableLeastAlpha); }
 
 // A table with a row per roughness, made when the row is first asked for.
@@ -91,7 +105,7 @@ struct OutsideAlbedo {
 
 // Slices are spaced by s = (eta - 1) / (eta + 1), the root of the reflectance at normal incidence. Slices lie close
 // near s = 0, where the reflectance at the horizon goes from 0 to 1.
-constexpr int kSlices = 32;
+constexpr int kSlices = 48;
 constexpr float kMaxS = (kMaxEta - 1) / (kMaxEta + 1);
 constexpr float slice_s(int slice) {
   return kMaxS * static_cast<float>(slice * slice) / ((kSlices - 1) * (kSlices - 1));
@@ -231,6 +245,11 @@ class CoatLosses {
 thread_local CoatLosses coat_losses;
 
 }  // namespace
+
+float DirectionalAlbedo::node_cos(int i) {
+  static const std::array<float, kNodes> cosines = node_cosines();
+  return cosines[static_cast<std::size_t>(i)];
+}
 
 float DirectionalAlbedo::at(float cos) const {
   const Stencil s = stencil_at(node_place(cos));

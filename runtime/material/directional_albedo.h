@@ -6,7 +6,7 @@
 //     lost.at(cos_o), lost.average()
 //
 // The numbers come from tables made by quadrature. The first thread that asks for the row of a roughness (and index)
-// makes the row. A new material takes some milliseconds, rough glass some forty. Indices go up to kMaxEta. Compared
+// makes the row. A new material takes some milliseconds, rough glass some fifty. Indices go up to kMaxEta. Compared
 // with the integrals, rows err by at most 5e-3, and by 1e-3 in the mean, mostly at the horizon of nearly smooth
 // surfaces.
 // Tested by: tests/runtime/material/directional_albedo_test.cpp
@@ -19,17 +19,15 @@ namespace fathom::runtime {
 // Maximum index: an index further from 1 than this, or than its inverse, is clamped to it.
 inline constexpr float kMaxEta = 4;
 
-// A function of the cosine in [0,1], by its values where cos^(1/4) = 0, 1/23 ... 1, with cubics between them.
-// (Near the horizon of a smooth surface the function changes within cosines of a few alpha.)
+// A function of the cosine in [0,1], by its values where (cos^(1/4) + cos) / 2 = 0, 1/31 ... 1, with cubics between
+// them. Near the horizon of a smooth surface the function changes within cosines of a few alpha, and far from it near
+// the critical angle.
 struct DirectionalAlbedo {
-  static constexpr int kNodes = 24;
+  static constexpr int kNodes = 32;
   std::array<float, kNodes> node;
 
   static DirectionalAlbedo constant(float value);
-  static float node_cos(int i) {
-    const float x = static_cast<float>(i) / (kNodes - 1);
-    return x * x * (x * x);
-  }
+  static float node_cos(int i);
   float at(float cos) const;
   // Returns the average over the hemisphere by cosine, 2 int f mu dmu, of the function that at() gives, so that
   // dividing by the average normalises this function.
