@@ -46,13 +46,9 @@ float average_transmittance(float eta) {
   return eta >= 1 ? 1 - smooth_albedo(eta).average() : (1 - smooth_albedo(1 / eta).average()) * (eta * eta);
 }
 
-// Returns the factor by which a coat darkens light that the base below it reflects, because the coat's inner side
-// sends part of that light back to the base (OpenPBR 1.1, "Coat darkening"). A white base is not darkened. The albedo
-// of the base does not depend on the direction, so that the factor is the same for wo and wi.
-glm::vec3 coat_darkening(const MaterialPoint& m, float coat_eta) {
-  const glm::vec3 body = glm::mix(m.base_color, glm::vec3(1), m.transmission);
-  const glm::vec3 albedo = glm::mix(body, m.specular_weight * m.base_color, m.metalness);
-  const float inner = 1 - average_transmittance(1 / coat_eta);
+// Returns the factor by which a coat darkens light that a base of this albedo reflects, because the coat's inner side
+// sends the part `inner` of that light back to the base (OpenPBR 1.1, "Darkening"). A white base is not darkened.
+glm::vec3 coat_darkening(glm::vec3 albedo, float inner) {
   return (1 - inner) / (1.0f - glm::min(albedo, glm::vec3(1)) * inner);
 }
 
@@ -99,14 +95,31 @@ void Principled::add_coat(const MaterialPoint& m, float eta) {
   smooth_coat_ = coat_ggx_.alpha() < kMinAlpha;
   coat_albedo_ = smooth_coat_ ? smooth_albedo(coat_eta_) : reflection_albedo(coat_ggx_.alpha(), coat_eta_);
   const glm::vec3 twice = glm::mix(glm::vec3(1), m.coat_color, coat_weight_);
-  const float darkens = coat_weight_ * m.coat_darkening;
-  const glm::vec3 darkening =
-      darkens > 0 ? glm::mix(glm::vec3(1), coat_darkening(m, coat_eta_), darkens) : glm::vec3(1);
+  coat_darkens_ = coat_weight_ * m.coat_darkening;
+  glm::vec3 darkening(1);
+  if (coat_darkens_ > 0) {
+    inner_diffuse_ = 1 - average_transmittance(1 / coat_eta_);
+    inner_roughness_ = std::min(m.roughness, 1.0f);
+    body_albedo_ = (1 - m.metalness) * glm::mix(m.base_color, glm::vec3(1), m.transmission);
+    const glm::vec3 albedo = body_albedo_ + m.metalness * m.specular_weight * m.base_color;
+    darkening = glm::mix(glm::vec3(1), coat_darkening(albedo, inner_diffuse_), coat_darkens_);
+  }
   if (!inside_) {
     coat_transmittance_o_ = coat_transmittance(wo_.z);
+    coat_color_ = twice;
     coat_tint_ = twice * darkening;
   }
   transmitted_coat_tint_ = glm::sqrt(twice) * darkening;
+}
+
+// Returns coat_tint_ for light that facets at this cosine reflect. The coat's inner side reflects light from a mirror
+// as its outer side reflects what arrives, and light from a rough base as diffuse light, with more total reflection.
+// The cosine of the facets is the same for wo and wi.
+glm::vec3 Principled::glossy_coat_tint(float cos_m) const {
+  if (inside_ || !(coat_darkens_ > 0)) return coat_tint_;
+  const float inner = glm::mix(fresnel(cos_m, coat_eta_), inner_diffuse_, inner_roughness_);
+  const glm::vec3 albedo = body_albedo_ + (metal_ > 0 ? metal_ * metal_tint_(cos_m) : glm::vec3(0));
+  return coat_color_ * glm::mix(glm::vec3(1), coat_darkening(albedo, inner), coat_darkens_);
 }
 
 void Principled::add_metal(const MaterialPoint& m) {
@@ -268,10 +281,10 @@ Principled::Sample Principled::sample(float lobe, glm::vec2 u) const {
               glm::vec3(coat_weight_ * opacity_ * fresnel(wo_.z, coat_eta_) / lobe_probability_[kCoat]), true};
     case kMetal:
       if (!smooth_metal_) return {.wi = reflect_about(wo_, ggx_.sample_visible_normal(wo_, u))};
-      return {
-          mirrored(wo_),
-          coat_tint_ * metal_tint_(wo_.z) * (metal_ * opacity_ * coat_transmittance_o_ / lobe_probability_[kMetal]),
-          true};
+      return {mirrored(wo_),
+              glossy_coat_tint(wo_.z) * metal_tint_(wo_.z) *
+                  (metal_ * opacity_ * coat_transmittance_o_ / lobe_probability_[kMetal]),
+              true};
     case kInterface:
       return sample_interface(std::min(lobe / lobe_probability_[kInterface], kBelowOne), u);
     case kDiffuse:
@@ -293,7 +306,7 @@ Principled::Sample Principled::sample_interface(float lobe, glm::vec2 u) const {
   const float part = opacity_ * coat_transmittance_o_ / lobe_probability_[kInterface];
   if (lobe < probability) {
     Sample sample{.wi = reflect_about(wo_, m), .delta = smooth_interface_};
-    sample.weight = coat_tint_ * interface_reflectance(reflected) * (part / probability);
+    sample.weight = glossy_coat_tint(wo_.z) * interface_reflectance(reflected) * (part / probability);
     return sample;
   }
   Sample sample{
@@ -356,7 +369,7 @@ void Principled::add_glossy(glm::vec3 wi, BsdfValue& value) const {
     tint += interface_reflectance(reflected);
     probability += lobe_probability_[kInterface] * reflection_probability(reflected);
   }
-  value.f += coat_tint_ * tint * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, wi.z) * wi.z);
+  value.f += glossy_coat_tint(cos_m) * tint * (opacity_ * passes * ggx_.d(m) * ggx_.g2_by_4_cos(wo_.z, wi.z) * wi.z);
   value.pdf += probability * ggx_.reflection_pdf(wo_, m);
 }
 

@@ -88,6 +88,7 @@ class Principled {
   DirectionalAlbedo attenuate_by_coat(DirectionalAlbedo row) const;
   DirectionalAlbedo add_coat_loss(DirectionalAlbedo row, float eta) const;
   float coat_transmittance(float cos) const;
+  glm::vec3 glossy_coat_tint(float cos_m) const;
   glm::vec3 interface_reflectance(float fresnel) const;
   glm::vec3 interface_transmittance(float passed) const;
   float reflection_probability(float fresnel) const;
@@ -106,8 +107,12 @@ class Principled {
   float coat_weight_ = 0, coat_eta_ = 1;
   DirectionalAlbedo coat_albedo_;
   float coat_transmittance_o_ = 1;                     // coat_transmittance(wo)
-  glm::vec3 coat_tint_{1}, transmitted_coat_tint_{1};  // of reflected light, of light that crosses once
-  float metal_ = 0;                                // weight of the metal, times specular_weight
+  glm::vec3 coat_tint_{1}, transmitted_coat_tint_{1};  // of diffusely reflected light, of light that crosses once
+  glm::vec3 coat_color_{1};                            // of light that crosses twice, not darkened
+  float coat_darkens_ = 0, inner_diffuse_ = 0;         // part of diffuse light that the coat's inner side reflects
+  float inner_roughness_ = 1;
+  glm::vec3 body_albedo_{0};  // part of the base's albedo that is no metal's
+  float metal_ = 0;           // weight of the metal, times specular_weight
   F82Tint metal_tint_;
   glm::vec3 tint_{1};                   // specular_color
   float over_diffuse_ = 0, glass_ = 0;  // weights of the interface over diffuse base, and of that of glass
