@@ -1,7 +1,7 @@
 // fathom mesh: writes the scene as a closed triangle mesh, each point of which is proved to lie near the surface.
 //
 //     $ fathom mesh part.fathom -o part.3mf --tolerance 0.05 --unit mm
-//     wrote part.3mf: 2348 triangles, 1176 vertices, 1 component, 40 x 25 x 10 mm
+//     wrote part.3mf: 2348 triangles, 1176 vertices, 1 body, 0 hollows, 40 x 25 x 10 mm
 //     every point of the mesh is within 0.0375 of the surface (proved)
 //
 // Tested by: tests/runtime/cli/cli_mesh_test.cpp
@@ -20,6 +20,7 @@
 #include "runtime/mesh/files/mesh_file.h"
 #include "runtime/mesh/make_mesh.h"
 #include "runtime/mesh/mesh_box.h"
+#include "runtime/mesh/mesh_measures.h"
 #include "vm/encoding/escape.h"
 
 namespace fathom::cli {
@@ -45,11 +46,6 @@ struct MeshRequest {
   bool plain = false;
   std::optional<int> threads;
 };
-
-// The file beside an OBJ file that has its materials.
-std::string materials_path(const MeshRequest& request) {
-  return std::filesystem::path(request.output).replace_extension(".mtl").string();
-}
 
 std::string mesh_endings() {
   std::string endings;
@@ -140,16 +136,29 @@ ExitCode fail_to_mesh(const MeshRequest& request, const runtime::MeshResult& res
                     {"give a smaller --tolerance or a larger --resolution"}, streams);
 }
 
+std::string surface_name(const compiler::CompiledScene& scene, std::uint32_t surface) {
+  const bool named = surface < scene.surfaces.size() && !scene.surfaces[surface].name.empty();
+  return named ? fmt::format("`{}`", scene.surfaces[surface].name) : "the scene";
+}
+
+std::string lost_part_text(const compiler::CompiledScene& scene, const runtime::LostPart& part) {
+  const std::string name = surface_name(scene, part.surface), other = surface_name(scene, part.other);
+  std::string text = part.is_gap ? "a gap of " + name : "a part of " + name;
+  if (part.is_gap && name != other) text = fmt::format("a gap between {} and {}", name, other);
+  text += fmt::format(", {:.2g} {} at {}: ", part.thickness, part.is_gap ? "wide" : "thin",
+                      place_text(part.place + scene.origin));
+  if (part.is_torn) {
+    text += part.is_gap ? "the mesh closes it" : "it is in pieces in the mesh";
+  } else {
+    text += fmt::format("the mesh lacks it at {}", count_of(part.places, "place"));
+  }
+  if (part.tapers) return text + "; it thins out, and finer cells lose less of it";
+  return text + fmt::format("; --tolerance {:.2g} keeps it{}", part.thickness, part.is_torn ? " in one here" : "");
+}
+
 void warn_of_lost_parts(const compiler::CompiledScene& scene, const runtime::MeshResult& result,
                         const Streams& streams) {
-  for (const runtime::LostPart& part : result.lost) {
-    const bool named = part.surface < scene.surfaces.size() && !scene.surfaces[part.surface].name.empty();
-    const std::string name = named ? fmt::format("`{}`", scene.surfaces[part.surface].name) : "the scene";
-    const std::string place = place_text(part.place + scene.origin);
-    warn(streams, fmt::format("{} {}, {:.2g} thin at {}: {} cells lose it; --tolerance {:.2g} keeps it",
-                              part.is_gap ? "a gap of" : "a part of", name, part.thickness, place, part.cells,
-                              part.thickness));
-  }
+  for (const runtime::LostPart& part : result.lost) warn(streams, lost_part_text(scene, part));
 }
 
 // Returns the mesh in the coordinates of the file.
@@ -163,8 +172,20 @@ runtime::MeshDocument make_document(const MeshRequest& request, const compiler::
     if (request.up == 1) v = {v.x, -v.z, v.y};
   }
   document.name = std::filesystem::path(request.output).stem().string();
+  std::vector<std::string> names;
+  for (const compiler::Surface& surface : scene.surfaces) names.push_back(surface.name);
+  document.parts = runtime::mesh_parts(document.mesh, names, document.name);
   if (request.unit >= 0) document.unit = &runtime::kLengthUnits[static_cast<std::size_t>(request.unit)];
   return document;
+}
+
+// Returns the names of all files that the mesh is written to.
+std::vector<std::string> outputs_of(const MeshRequest& request) {
+  std::vector<std::string> outputs = {request.output};
+  if (request.format->format == runtime::MeshFormat::Obj) {
+    outputs.push_back(runtime::material_file_of(request.output));
+  }
+  return outputs;
 }
 
 std::optional<std::string> write_document(const MeshRequest& request, const runtime::MeshDocument& document) {
@@ -183,28 +204,41 @@ std::optional<std::string> write_document(const MeshRequest& request, const runt
     case MeshFormat::Obj:
       break;
   }
-  const std::string materials = materials_path(request);
-  if (auto problem = runtime::write_file(encode_mtl(document), materials)) return problem;
-  return runtime::write_file(encode_obj(document, std::filesystem::path(materials).filename().string()),
-                             request.output);
+  // Both files are whole before either gets its name.
+  const std::string materials = runtime::material_file_of(request.output);
+  runtime::AtomicFile mesh_file(request.output), material_file(materials);
+  mesh_file.write(encode_obj(document, std::filesystem::path(materials).filename().string()));
+  material_file.write(encode_mtl(document));
+  std::optional<std::string> problem = material_file.problem();
+  if (problem) return problem;
+  const auto renamed = mesh_file.commit([&] { return !(problem = material_file.commit()); });
+  return problem ? problem : renamed;
+}
+
+std::string solids_text(const runtime::TriangleMesh& mesh) {
+  const runtime::MeshMeasures measures = runtime::measure(mesh);
+  return (measures.bodies == 1 ? "1 body" : fmt::format("{} bodies", measures.bodies)) + ", " +
+         count_of(measures.hollows, "hollow");
 }
 
 void summarise(const MeshRequest& request, const compiler::CompiledScene& scene, const runtime::MeshResult& result,
-               const runtime::MeshDocument& document, double seconds, const Streams& streams) {
+               const runtime::MeshDocument& document, int threads, double seconds, const Streams& streams) {
   compiler::Box box;
   for (const glm::dvec3& v : document.mesh.vertices) box = unite(box, {v, v});
   const glm::dvec3 size = box.hi - box.lo;
-  const std::size_t components = runtime::measure(document.mesh).components;
   say(streams,
       fmt::format("wrote {}: {} triangles, {} vertices, {}, {:.4g} x {:.4g} x {:.4g}{}{}", request.output,
-                  document.mesh.triangles.size(), document.mesh.vertices.size(), count_of(components, "component"),
-                  size.x, size.y, size.z, document.unit ? " " : "", document.unit ? document.unit->name : ""));
-  // Files hold floats, whose rounding counts, too.
-  const double rounding = 0x1p-23 * std::max(compiler::largest_part(box.lo), compiler::largest_part(box.hi));
+                  document.mesh.triangles.size(), document.mesh.vertices.size(), solids_text(document.mesh), size.x,
+                  size.y, size.z, document.unit ? " " : "", document.unit ? document.unit->name : ""));
+  say(streams,
+      fmt::format("{}, {}, {}", count_of(runtime::count_crossings(document.mesh, threads), "crossing"),
+                  count_of(runtime::count_folds(document.mesh), "fold"), count_of(result.islands, "island")));
   constexpr double kUp = 1.0005;  // so that four digits are not below the bound
   say(streams,
-      fmt::format("every point of the mesh is within {:.4g} of the surface ({})", kUp * (result.bound + rounding),
-                  scene.certified ? "proved" : "estimated: the float error of the scene is"));
+      fmt::format("every point of the mesh is within {:.4g} of the surface ({}); parts of the surface thinner "
+                  "than {:.4g} may be further from the mesh",
+                  kUp * result.bound, scene.certified ? "proved" : "estimated: the float error of the scene is",
+                  result.cell));
   say(streams, fmt::format("{} cells of {:.4g}, {} triangles before simplification, {:.2f} s", result.cells,
                            result.cell, result.contour_triangles, seconds));
 }
@@ -214,10 +248,11 @@ void summarise(const MeshRequest& request, const compiler::CompiledScene& scene,
 int run_mesh(std::span<const std::string> args, const Streams& streams) {
   MeshRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  std::vector<std::string> outputs = {request.output};
-  if (request.format->format == runtime::MeshFormat::Obj) outputs.push_back(materials_path(request));
+  const std::vector<std::string> outputs = outputs_of(request);
   if (const auto code = claim_outputs(outputs, streams)) return *code;
-  if (const auto problem = runtime::check_file_path(request.output)) return fail(streams, kIo, *problem);
+  for (const std::string& output : outputs) {
+    if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
+  }
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);
@@ -249,7 +284,7 @@ int run_mesh(std::span<const std::string> args, const Streams& streams) {
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   const runtime::MeshDocument document = make_document(request, scene, std::move(result.mesh));
   if (const auto problem = write_document(request, document)) return fail(streams, kIo, *problem);
-  summarise(request, scene, result, document, time.count(), streams);
+  summarise(request, scene, result, document, options.threads, time.count(), streams);
   return kDone;
 }
 

@@ -95,7 +95,7 @@ void Environment::set_table(int width, int height, std::vector<float> luminances
                             const PiecewiseConstantSphere::Image& image) {
   const double mean_of_all = mean_over_sphere(width, height, luminances);
   for (float& value : luminances) value = std::max(value - static_cast<float>(mean_of_all), 0.0f);
-  // What little rounding leaves of an even background is not sampled, either.
+  // The little that rounding leaves of an even background is not sampled, either.
   if (mean_over_sphere(width, height, luminances) < kMinUneven * mean_of_all) {
     std::fill(luminances.begin(), luminances.end(), 0.0f);
   }

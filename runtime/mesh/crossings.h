@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "runtime/mesh/signed_lattice.h"
+#include "runtime/mesh/lattice/signed_lattice.h"
 
 namespace fathom::runtime {
 

@@ -19,7 +19,7 @@
 #include <memory>
 #include <vector>
 
-#include "runtime/mesh/mesh_field.h"
+#include "runtime/mesh/lattice/mesh_field.h"
 
 namespace fathom::runtime {
 

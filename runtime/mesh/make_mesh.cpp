@@ -7,7 +7,8 @@
 
 #include "runtime/mesh/contour.h"
 #include "runtime/mesh/distance_proof.h"
-#include "runtime/mesh/find_cells.h"
+#include "runtime/mesh/lattice/find_cells.h"
+#include "runtime/mesh/mesh_measures.h"
 #include "runtime/mesh/move_to_surface.h"
 #include "runtime/mesh/simplify.h"
 #include "vm/program/parallel_for.h"
@@ -15,7 +16,7 @@
 namespace fathom::runtime {
 namespace {
 
-// A cell's diagonal over its edge, with a margin for the rounding of its corners.
+// A cell's diagonal over its edge, with a margin for the rounding of coordinates.
 constexpr double kDiagonal = 1.7320508 * (1 + 0x1p-10);
 // Bytes per cell that may hold the surface. The sheet of tests/data/meshes/gyroid-box.fathom, of whose cells two
 // thirds are crossed, takes 282.
@@ -64,6 +65,12 @@ void separate(TriangleMesh& mesh, glm::dvec3 origin) {
   }
 }
 
+// Returns the distance by which files, which hold floats, may move points of the scene's coordinates.
+double file_rounding(const compiler::Box& box, glm::dvec3 origin) {
+  const compiler::Box all = box.moved(origin);
+  return 0x1p-23 * std::max(compiler::largest_part(all.lo), compiler::largest_part(all.hi));
+}
+
 // Returns the triangles among `some` that are not proved within `distance`, the same for any number of threads.
 std::vector<std::uint32_t> unproved(const MeshField& field, const TriangleMesh& mesh,
                                     const std::vector<std::uint32_t>& some, double distance, int threads) {
@@ -99,11 +106,6 @@ double prove(const MeshField& field, const TriangleMesh& mesh, double deviation,
   return tolerance;
 }
 
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t v) {
-  while (parents[v] != v) v = parents[v] = parents[parents[v]];
-  return v;
-}
-
 }  // namespace
 
 double tolerance_of(const compiler::Box& box, double resolution) {
@@ -116,34 +118,20 @@ double fine_deviation(double tolerance) {
   return kCellShare * tolerance / kDiagonal;
 }
 
-MeshMeasures measure(const TriangleMesh& mesh) {
-  MeshMeasures measures;
-  std::vector<std::uint32_t> parents(mesh.vertices.size());
-  std::iota(parents.begin(), parents.end(), 0u);
-  for (const Triangle& triangle : mesh.triangles) {
-    const auto corners = mesh.corners(triangle);
-    measures.volume += glm::dot(corners[0], glm::cross(corners[1], corners[2])) / 6;
-    measures.area += 0.5 * glm::length(area_normal(corners));
-    for (const std::size_t i : {1u, 2u}) {
-      parents[root_of(parents, triangle.vertices[i])] = root_of(parents, triangle.vertices[0]);
-    }
-  }
-  for (std::uint32_t v = 0; v < parents.size(); ++v) measures.components += root_of(parents, v) == v;
-  return measures;
-}
-
 MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& box, const MeshOptions& options) {
   using End = MeshResult::End;
   MeshResult result;
   const auto begin = [&](std::string_view step) {
     if (options.progress) options.progress(step);
   };
-  result.cell = options.tolerance / kDiagonal;
-  const CellLattice lattice = make_lattice(box, result.cell);
-  if (lattice.cell == 0 || lattice.diagonal > options.tolerance) {
+  const double rounding = file_rounding(box, scene.origin);
+  result.cell = (options.tolerance - rounding) / kDiagonal;
+  const CellLattice lattice = result.cell > 0 ? make_lattice(box, result.cell) : CellLattice{};
+  if (lattice.cell == 0 || lattice.diagonal + rounding > options.tolerance) {
     result.end = End::TooFine;
     return result;
   }
+  const double within = lattice.diagonal;  // by construction, and a little less than the tolerance
   begin("cells");
   const glm::dvec3 size = (box.hi - box.lo) / result.cell;
   const double shell = 2 * (size.x * size.y + size.y * size.z + size.z * size.x);
@@ -162,7 +150,8 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
   {
     const SignedLattice signs(found.cells, signs_of(field, lattice, options.threads));
     found.cells = {};
-    result.lost = find_lost_parts(field, lattice, signs, options.threads);
+    LostParts lost = find_lost_parts(field, lattice, signs, options.threads);
+    result.lost = std::move(lost.parts), result.islands = lost.islands;
     contoured = contour(lattice, signs, find_crossings(field, lattice, signs, options.threads));
     move_to_surface(field, lattice, contoured, options.threads);
   }
@@ -177,12 +166,12 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
     for (const compiler::Surface& surface : scene.surfaces) materials.push_back(surface.material);
     if (materials.empty()) materials.push_back(0);
     simplify(field, contoured,
-             {options.tolerance, options.deviation, kBlockCells * result.cell, options.threads, materials});
+             {within, std::min(options.deviation, within), kBlockCells * result.cell, options.threads, materials});
   }
   result.mesh = std::move(contoured.mesh);
   separate(result.mesh, scene.origin);
   begin("proof");
-  result.bound = prove(field, result.mesh, options.deviation, options.tolerance, options.threads);
+  result.bound = prove(field, result.mesh, options.deviation, within, options.threads) + rounding;
   return result;
 }
 

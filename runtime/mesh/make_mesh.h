@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "compiler/scene/compiled_scene.h"
-#include "runtime/mesh/lost_parts.h"
+#include "runtime/mesh/lost/lost_parts.h"
 #include "runtime/mesh/mesh.h"
 
 namespace fathom::runtime {
@@ -36,14 +36,16 @@ struct MeshResult {
   enum class End { Done, TooFine, TooMany, Empty };
   End end = End::Done;
   TriangleMesh mesh;
-  // Distance within which every point of the mesh is of the surface, scene units. Proved, if the float error of the
-  // field is (CompiledField::certified).
+  // Distance within which every point of the mesh is of the surface, scene units, also after rounding to float; at
+  // most the tolerance. Proved, if the float error of the field is (CompiledField::certified). The surface may be
+  // further from the mesh where a part is thinner than the cells.
   double bound = 0;
   double cell = 0;                    // edge of the cells, scene units
   std::size_t cells = 0;              // number of cells that may hold the surface
   double memory = 0;                  // bytes that the mesh needs, an estimate, if there are too many cells
   std::size_t contour_triangles = 0;  // before simplification
   std::vector<LostPart> lost;
+  std::size_t islands = 0;  // number of bodies of the mesh that are parts of another
 };
 
 // Meshes the scene's solid within the finite `box`, programs' coordinates. Unless it is clipped, the box must contain
@@ -54,12 +56,5 @@ MeshResult make_mesh(const compiler::CompiledScene& scene, const compiler::Box& 
 double tolerance_of(const compiler::Box& box, double resolution);
 // Returns a deviation that a mesh of this tolerance keeps nearly everywhere without simplification.
 double fine_deviation(double tolerance);
-
-// Measures of a closed mesh: connected components, volume and area in scene units.
-struct MeshMeasures {
-  std::size_t components = 0;
-  double volume = 0, area = 0;
-};
-MeshMeasures measure(const TriangleMesh& mesh);
 
 }  // namespace fathom::runtime

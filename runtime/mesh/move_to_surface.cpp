@@ -3,6 +3,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "runtime/mesh/mesh_measures.h"
+
 namespace fathom::runtime {
 
 void move_to_surface(const MeshField& field, const CellLattice& lattice, Contour& contour, int threads) {
@@ -44,6 +46,24 @@ void move_to_surface(const MeshField& field, const CellLattice& lattice, Contour
     }
   }
   for (const Walk& walk : walks) vertices[walk.vertex] = walk.place;
+  turn_right_side_out(lattice, contour);
+}
+
+void turn_right_side_out(const CellLattice& lattice, Contour& contour) {
+  // With vertices in the middles of cells, a surface consists of faces between corners of different signs.
+  TriangleMesh middles = contour.mesh;
+  for (std::size_t v = 0; v < middles.vertices.size(); ++v) {
+    if (contour.cells[v] == Contour::kNoCell) continue;
+    const compiler::Box box = inset_box(lattice, place_of(contour.cells[v]));
+    middles.vertices[v] = 0.5 * (box.lo + box.hi);
+  }
+  DisjointSets connected = connected_vertices(contour.mesh);
+  const std::vector<double> volumes = surface_volumes(contour.mesh, connected);
+  const std::vector<double> right = surface_volumes(middles, connected);
+  for (std::uint32_t v = 0; v < middles.vertices.size(); ++v) {
+    const std::uint32_t root = connected.root(v);
+    if (!(volumes[root] * right[root] > 0)) contour.mesh.vertices[v] = middles.vertices[v];
+  }
 }
 
 }  // namespace fathom::runtime

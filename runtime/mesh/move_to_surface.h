@@ -8,7 +8,11 @@
 namespace fathom::runtime {
 
 // Follows the gradient from each vertex that is off the surface, within its cell. A vertex stays if that brings it no
-// nearer to the surface.
+// nearer to the surface. Then turns surfaces right side out.
 void move_to_surface(const MeshField& field, const CellLattice& lattice, Contour& contour, int threads);
+
+// Moves the vertices of a connected surface to the middles of their cells if it encloses a volume of the wrong sign:
+// a hollow or body hardly larger than a cell whose folds outweigh it.
+void turn_right_side_out(const CellLattice& lattice, Contour& contour);
 
 }  // namespace fathom::runtime

@@ -179,7 +179,7 @@ void PiecewiseConstantSphere::set_border() {
   }
 }
 
-// Of a large image hardly anything is in the cache. All that the rays need is therefore asked for first.
+// Hardly anything of a large image is in the cache. All that the rays need is therefore asked for first.
 void PiecewiseConstantSphere::sample(std::size_t count, const float* u, const float* v, DirectionRows& rows) const {
   const auto width = static_cast<float>(tables_.width);
   const auto columns = static_cast<std::size_t>(tables_.width);

@@ -1,4 +1,4 @@
-// What PiecewiseConstantSphere (piecewise_constant_sphere.h) and its lanes (piecewise_constant_sphere_lanes.h) share:
+// The tables of PiecewiseConstantSphere (piecewise_constant_sphere.h) and its lanes (piecewise_constant_sphere_lanes.h):
 // rows of rays, and the tables of a sphere.
 #pragma once
 

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "runtime/mesh/files/mesh_bytes.h"
 #include "runtime/mesh/files/mesh_file.h"
+#include "runtime/mesh/mesh_sets.h"
 
 namespace fathom::runtime {
 namespace {
@@ -46,37 +48,78 @@ std::string attribute(std::string_view text) {
   return out;
 }
 
+std::string hex_color(const MeshMaterial& material) {
+  const auto color = shown_color_bytes(material);
+  const auto alpha = static_cast<unsigned>(std::min(1.0, std::max(0.0, material.opacity)) * 255 + 0.5);
+  return fmt::format("#{:02X}{:02X}{:02X}{:02X}", color[0], color[1], color[2], alpha);
+}
+
+// Resources are numbered: base materials, a group with one colour per material, a mesh per part, and all parts.
+constexpr std::size_t kBaseMaterials = 1, kFirstColor = 2;
+
+void write_materials(const MeshDocument& document, fmt::memory_buffer& text) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "<basematerials id=\"{}\">\n", kBaseMaterials);
+  for (const MeshMaterial& material : document.materials) {
+    fmt::format_to(out, "<base name=\"{}\" displaycolor=\"{}\"/>\n",
+                   attribute(material.name.empty() ? "default" : material.name), hex_color(material));
+  }
+  fmt::format_to(out, "</basematerials>\n");
+  for (std::size_t i = 0; i < document.materials.size(); ++i) {
+    fmt::format_to(out, "<m:colorgroup id=\"{}\"><m:color color=\"{}\"/></m:colorgroup>\n", kFirstColor + i,
+                   hex_color(document.materials[i]));
+  }
+}
+
+// Returns the material of most triangles.
+std::size_t main_material(const MeshDocument& document, const MeshPart& part) {
+  std::vector<std::size_t> counts(document.materials.size());
+  for (const std::uint32_t t : part.triangles) ++counts[document.material_of[document.mesh.triangles[t].surface]];
+  return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+}
+
+// The triangles name base materials. Slicers read only the object's property, and of that only a group's one colour.
+void write_part(const MeshDocument& document, const MeshPart& part, std::size_t id, fmt::memory_buffer& text) {
+  const auto out = std::back_inserter(text);
+  fmt::format_to(out, "<object id=\"{}\" type=\"model\" name=\"{}\" pid=\"{}\" pindex=\"0\"><mesh>\n<vertices>\n", id,
+                 attribute(part.name), kFirstColor + main_material(document, part));
+  const PartVertices vertices(document.mesh, part.triangles);
+  for (const std::uint32_t each : vertices.used) {
+    const glm::vec3 v(document.mesh.vertices[each]);
+    fmt::format_to(out, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", v.x, v.y, v.z);
+  }
+  fmt::format_to(out, "</vertices>\n<triangles>\n");
+  for (const std::uint32_t t : part.triangles) {
+    const Triangle& triangle = document.mesh.triangles[t];
+    const auto& v = triangle.vertices;
+    fmt::format_to(out, "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\" pid=\"{}\" p1=\"{}\"/>\n", vertices.number(v[0]),
+                   vertices.number(v[1]), vertices.number(v[2]), kBaseMaterials,
+                   document.material_of[triangle.surface]);
+  }
+  fmt::format_to(out, "</triangles>\n</mesh></object>\n");
+}
+
 std::string model_xml(const MeshDocument& document) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   const std::string_view unit = document.unit ? document.unit->name_in_3mf : kLengthUnits.front().name_in_3mf;
   fmt::format_to(out,
                  "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{}\" xml:lang=\"en-US\" "
-                 "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
-                 "<metadata name=\"Application\">fathom</metadata>\n<resources>\n<basematerials id=\"1\">\n",
+                 "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+                 "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">\n"
+                 "<metadata name=\"Application\">fathom</metadata>\n<resources>\n",
                  unit);
-  for (const MeshMaterial& material : document.materials) {
-    const auto color = color_bytes(material);
-    const auto alpha = static_cast<unsigned>(std::min(1.0, std::max(0.0, material.opacity)) * 255 + 0.5);
-    fmt::format_to(out, "<base name=\"{}\" displaycolor=\"#{:02X}{:02X}{:02X}{:02X}\"/>\n",
-                   attribute(material.name.empty() ? "default" : material.name), color[0], color[1], color[2], alpha);
+  write_materials(document, text);
+  const std::size_t first = kFirstColor + document.materials.size(), count = document.parts.size();
+  for (std::size_t i = 0; i < count; ++i) write_part(document, document.parts[i], first + i, text);
+  if (count > 1) {
+    fmt::format_to(out, "<object id=\"{}\" type=\"model\" name=\"{}\"><components>\n", first + count,
+                   attribute(document.name));
+    for (std::size_t i = 0; i < count; ++i) fmt::format_to(out, "<component objectid=\"{}\"/>\n", first + i);
+    fmt::format_to(out, "</components></object>\n");
   }
-  fmt::format_to(
-      out,
-      "</basematerials>\n<object id=\"2\" type=\"model\" name=\"{}\" pid=\"1\" pindex=\"0\"><mesh>\n<vertices>\n",
-      attribute(document.name));
-  for (const glm::dvec3& v : document.mesh.vertices) {
-    fmt::format_to(out, "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", static_cast<float>(v.x), static_cast<float>(v.y),
-                   static_cast<float>(v.z));
-  }
-  fmt::format_to(out, "</vertices>\n<triangles>\n");
-  for (const Triangle& triangle : document.mesh.triangles) {
-    const auto& v = triangle.vertices;
-    fmt::format_to(out, "<triangle v1=\"{}\" v2=\"{}\" v3=\"{}\" pid=\"1\" p1=\"{}\"/>\n", v[0], v[1], v[2],
-                   document.material_of[triangle.surface]);
-  }
-  fmt::format_to(out,
-                 "</triangles>\n</mesh></object>\n</resources>\n<build><item objectid=\"2\"/></build>\n</model>\n");
+  fmt::format_to(out, "</resources>\n<build><item objectid=\"{}\"/></build>\n</model>\n",
+                 count > 1 ? first + count : first);
   return fmt::to_string(text);
 }
 

@@ -32,11 +32,12 @@ class MeshBytes {
 
 inline std::vector<std::uint8_t> to_bytes(std::string_view text) { return {text.begin(), text.end()}; }
 
-// Returns the name with `_` in place of blanks and control characters, for formats of words.
+// Returns the name with `_` in place of blanks, control characters, `#`, which begins a comment, and `\`, which joins
+// lines, for formats of words.
 inline std::string word_of(std::string_view name, std::string_view if_empty) {
   std::string word(name.empty() ? if_empty : name);
   for (char& c : word) {
-    if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f || c == '#') c = '_';
+    if (static_cast<unsigned char>(c) <= ' ' || c == 0x7f || c == '#' || c == '\\') c = '_';
   }
   return word;
 }

@@ -41,13 +41,24 @@ inline constexpr std::array kLengthUnits = {
     LengthUnit{"in", "inch", 0.0254},
 };
 
+// Closed parts of a mesh, which share no vertex, with the names of their objects.
+struct MeshPart {
+  std::string name;
+  std::vector<std::uint32_t> triangles;  // ascending
+};
+// Returns the parts, in the order of their first triangles. Triangles that share a vertex or an object's name are of
+// one part, so a hollow is of the part around it. A part without names is called `name`.
+std::vector<MeshPart> mesh_parts(const TriangleMesh& mesh, const std::vector<std::string>& surface_names,
+                                 const std::string& name);
+
 // A mesh with everything that files say of it.
 struct MeshDocument {
   TriangleMesh mesh;  // in the coordinates of the file, scene units
   std::vector<MeshMaterial> materials;
   std::vector<std::uint32_t> material_of;  // [surface]
-  std::string name;                        // of the object
-  const LengthUnit* unit = nullptr;        // of a scene unit; null: not given
+  std::vector<MeshPart> parts;
+  std::string name;                  // of the whole
+  const LengthUnit* unit = nullptr;  // of a scene unit; null: not given
 
   const MeshMaterial& material(const Triangle& triangle) const { return materials[material_of[triangle.surface]]; }
 };
@@ -58,6 +69,8 @@ std::vector<std::uint8_t> encode_stl(const MeshDocument& document);
 // Colours stand at vertices, for Blender, and at faces.
 std::vector<std::uint8_t> encode_ply(const MeshDocument& document);
 std::vector<std::uint8_t> encode_obj(const MeshDocument& document, std::string_view material_file);
+// Returns the name of the file of materials beside an OBJ file: without blanks, at which `mtllib` ends a name.
+std::string material_file_of(const std::string& path);
 std::vector<std::uint8_t> encode_mtl(const MeshDocument& document);
 std::vector<std::uint8_t> encode_glb(const MeshDocument& document);
 // Returns nothing if the library that packs the file fails.

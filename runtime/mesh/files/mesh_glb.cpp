@@ -1,10 +1,14 @@
-// GLB: glTF 2.0 in one file, a JSON chunk and a binary chunk. One primitive per material; all share the vertices.
+// GLB: glTF 2.0 in one file, a JSON chunk and a binary chunk. One mesh per part, one primitive per material.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "runtime/mesh/files/mesh_bytes.h"
 #include "runtime/mesh/files/mesh_file.h"
+#include "runtime/mesh/mesh_measures.h"
+#include "runtime/mesh/mesh_sets.h"
+#include "vm/number/real.h"
 
 namespace fathom::runtime {
 namespace {
@@ -16,7 +20,24 @@ constexpr std::uint32_t kFloat = 5126, kUnsignedInt = 5125;                 // t
 
 Json three(glm::dvec3 v) { return Json::array({v.x, v.y, v.z}); }
 
-Json material_json(const MeshMaterial& m) {
+// Adds what KHR_materials_* say of light that gets through the surface. `depth`: a usual way through the body,
+// metres.
+void add_transmission(const MeshMaterial& m, double depth, double metres, Json& extensions) {
+  extensions["KHR_materials_transmission"]["transmissionFactor"] = m.transmission;
+  extensions["KHR_materials_ior"]["ior"] = m.ior;
+  if (!m.has_interior) return;
+  Json volume = {{"thicknessFactor", depth}};
+  const double most = std::max({m.absorption.x, m.absorption.y, m.absorption.z});
+  if (most > 0) {
+    // The distance at which the most absorbed colour is down to 1/e.
+    volume["attenuationDistance"] = metres / most;
+    const glm::dvec3 share = m.absorption / most;
+    volume["attenuationColor"] = {vm::real::exp(-share.x), vm::real::exp(-share.y), vm::real::exp(-share.z)};
+  }
+  extensions["KHR_materials_volume"] = volume;
+}
+
+Json material_json(const MeshMaterial& m, double depth, double metres) {
   const glm::dvec3 color = glm::clamp(m.color, 0.0, 1.0);
   Json json = {{"name", m.name},
                {"pbrMetallicRoughness",
@@ -24,10 +45,12 @@ Json material_json(const MeshMaterial& m) {
                  {"metallicFactor", m.metalness},
                  {"roughnessFactor", m.roughness}}}};
   if (m.opacity < 1) json["alphaMode"] = "BLEND";
+  Json extensions = Json::object();
+  if (m.transmission > 0) add_transmission(m, depth, metres, extensions);
   const double strongest = std::max({m.emission.x, m.emission.y, m.emission.z});
-  if (!(strongest > 0)) return json;
-  json["emissiveFactor"] = three(m.emission / std::max(1.0, strongest));
-  if (strongest > 1) json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strongest;
+  if (strongest > 0) json["emissiveFactor"] = three(m.emission / std::max(1.0, strongest));
+  if (strongest > 1) extensions["KHR_materials_emissive_strength"]["emissiveStrength"] = strongest;
+  if (!extensions.empty()) json["extensions"] = extensions;
   return json;
 }
 
@@ -42,29 +65,33 @@ struct GlbParts {
   }
 };
 
-void add_positions(const MeshDocument& document, GlbParts& parts) {
-  const double metres = document.unit ? document.unit->metres : 1;
+double metres_of(const MeshDocument& document) { return document.unit ? document.unit->metres : 1; }
+
+void add_positions(const MeshDocument& document, const PartVertices& vertices, GlbParts& parts) {
+  const std::size_t start = parts.binary.size();
   glm::dvec3 lo(INFINITY), hi(-INFINITY);
-  for (const glm::dvec3& v : document.mesh.vertices) {
-    const glm::dvec3 place(glm::vec3(v * metres));
+  for (const std::uint32_t v : vertices.used) {
+    const glm::dvec3 place(glm::vec3(document.mesh.vertices[v] * metres_of(document)));
     for (int i = 0; i < 3; ++i) parts.binary.f32(place[i]);
     lo = glm::min(lo, place), hi = glm::max(hi, place);
   }
-  parts.close_view(0, kArrayBuffer);
-  parts.accessors.push_back({{"bufferView", 0},
+  parts.close_view(start, kArrayBuffer);
+  parts.accessors.push_back({{"bufferView", parts.views.size() - 1},
                              {"componentType", kFloat},
-                             {"count", document.mesh.vertices.size()},
+                             {"count", vertices.used.size()},
                              {"type", "VEC3"},
                              {"min", three(lo)},
                              {"max", three(hi)}});
 }
 
-// Adds the triangles of a material. Returns false if it has none.
-bool add_triangles(const MeshDocument& document, std::uint32_t material, GlbParts& parts) {
+// Adds the triangles of a material. Returns false if the part has none.
+bool add_triangles(const MeshDocument& document, const MeshPart& part, const PartVertices& vertices,
+                   std::uint32_t material, GlbParts& parts) {
   const std::size_t start = parts.binary.size();
-  for (const Triangle& triangle : document.mesh.triangles) {
+  for (const std::uint32_t t : part.triangles) {
+    const Triangle& triangle = document.mesh.triangles[t];
     if (document.material_of[triangle.surface] != material) continue;
-    for (const std::uint32_t v : triangle.vertices) parts.binary.u32(v);
+    for (const std::uint32_t v : triangle.vertices) parts.binary.u32(vertices.number(v));
   }
   const std::size_t count = (parts.binary.size() - start) / sizeof(std::uint32_t);
   if (count == 0) return false;
@@ -76,26 +103,49 @@ bool add_triangles(const MeshDocument& document, std::uint32_t material, GlbPart
   return true;
 }
 
+// Adds a mesh with a primitive per material, and returns it.
+Json add_part(const MeshDocument& document, const MeshPart& part, GlbParts& parts) {
+  const PartVertices vertices(document.mesh, part.triangles);
+  add_positions(document, vertices, parts);
+  const std::size_t positions = parts.accessors.size() - 1;
+  Json primitives = Json::array();
+  for (std::uint32_t material = 0; material < document.materials.size(); ++material) {
+    if (!add_triangles(document, part, vertices, material, parts)) continue;
+    primitives.push_back(
+        {{"attributes", {{"POSITION", positions}}}, {"indices", parts.accessors.size() - 1}, {"material", material}});
+  }
+  return {{"name", part.name}, {"primitives", primitives}};
+}
+
+// The mean length of a chord of a body: four times its volume over its area (Cauchy, 1850).
+double mean_chord(const TriangleMesh& mesh) {
+  const MeshMeasures measures = measure(mesh);
+  return measures.area > 0 ? 4 * std::abs(measures.volume) / measures.area : 0;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_glb(const MeshDocument& document) {
   GlbParts parts;
-  add_positions(document, parts);
-  Json primitives = Json::array(), materials = Json::array();
-  bool extended = false;
-  for (std::uint32_t i = 0; i < document.materials.size(); ++i) {
-    if (!add_triangles(document, i, parts)) continue;
-    primitives.push_back(
-        {{"attributes", {{"POSITION", 0}}}, {"indices", parts.accessors.size() - 1}, {"material", materials.size()}});
-    materials.push_back(material_json(document.materials[i]));
-    extended |= materials.back().contains("extensions");
+  Json meshes = Json::array(), nodes = Json::array(), roots = Json::array(), materials = Json::array();
+  for (const MeshPart& part : document.parts) {
+    roots.push_back(nodes.size());
+    nodes.push_back({{"mesh", meshes.size()}, {"name", part.name}});
+    meshes.push_back(add_part(document, part, parts));
+  }
+  std::set<std::string> extensions;
+  const double metres = metres_of(document), depth = metres * mean_chord(document.mesh);
+  for (const MeshMaterial& material : document.materials) {
+    materials.push_back(material_json(material, depth, metres));
+    if (!materials.back().contains("extensions")) continue;
+    for (const auto& [name, values] : materials.back()["extensions"].items()) extensions.insert(name);
   }
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "fathom"}}}};
-  if (extended) json["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+  if (!extensions.empty()) json["extensionsUsed"] = extensions;
   json["scene"] = 0;
-  json["scenes"] = {{{"nodes", {0}}}};
-  json["nodes"] = {{{"mesh", 0}, {"name", document.name}}};
-  json["meshes"] = {{{"name", document.name}, {"primitives", primitives}}};
+  json["scenes"] = {{{"name", document.name}, {"nodes", roots}}};
+  json["nodes"] = nodes;
+  json["meshes"] = meshes;
   json["materials"] = materials;
   json["accessors"] = parts.accessors;
   json["bufferViews"] = parts.views;

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
+#include <set>
 
 #include "compiler/scene/srgb.h"
 #include "runtime/mesh/files/mesh_bytes.h"
@@ -20,6 +22,24 @@ std::vector<std::uint32_t> vertex_materials(const MeshDocument& document) {
   return of;
 }
 
+// Returns a word per material, all different. Names that are words keep them.
+std::vector<std::string> material_words(const MeshDocument& document) {
+  std::set<std::string> taken;
+  for (const MeshMaterial& material : document.materials) {
+    if (word_of(material.name, "default") == material.name) taken.insert(material.name);
+  }
+  std::vector<std::string> words;
+  std::set<std::string> used;
+  for (const MeshMaterial& material : document.materials) {
+    const std::string word = word_of(material.name, "default");
+    std::string unique = word;
+    const bool kept = word == material.name && used.insert(word).second;
+    for (int number = 2; !kept && !taken.insert(unique).second; ++number) unique = fmt::format("{}_{}", word, number);
+    words.push_back(unique);
+  }
+  return words;
+}
+
 std::string mtl_color(glm::dvec3 color) { return fmt::format("{:.6g} {:.6g} {:.6g}", color.x, color.y, color.z); }
 
 }  // namespace
@@ -33,6 +53,11 @@ const MeshFormatInfo* mesh_format_of(std::string_view path) {
     if (info.ending == ending) return &info;
   }
   return nullptr;
+}
+
+std::string material_file_of(const std::string& path) {
+  std::filesystem::path file(path);
+  return file.replace_filename(word_of(file.stem().string(), "mesh") + ".mtl").string();
 }
 
 std::vector<std::uint8_t> encode_stl(const MeshDocument& document) {
@@ -64,7 +89,7 @@ std::vector<std::uint8_t> encode_ply(const MeshDocument& document) {
       "property float z\n{}element face {}\nproperty list uchar int vertex_indices\n{}end_header\n",
       word_of(document.name, "mesh"), document.mesh.vertices.size(), kColor, document.mesh.triangles.size(), kColor));
   std::vector<std::array<std::uint8_t, 3>> colors;
-  for (const MeshMaterial& material : document.materials) colors.push_back(color_bytes(material));
+  for (const MeshMaterial& material : document.materials) colors.push_back(shown_color_bytes(material));
   const std::vector<std::uint32_t> materials = vertex_materials(document);
   for (std::size_t v = 0; v < document.mesh.vertices.size(); ++v) {
     for (int i = 0; i < 3; ++i) bytes.f32(document.mesh.vertices[v][i]);
@@ -81,18 +106,23 @@ std::vector<std::uint8_t> encode_ply(const MeshDocument& document) {
 std::vector<std::uint8_t> encode_obj(const MeshDocument& document, std::string_view material_file) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "mtllib {}\no {}\n", material_file, word_of(document.name, "mesh"));
+  fmt::format_to(out, "mtllib {}\n", material_file);
+  const std::vector<std::string> words = material_words(document);
   for (const glm::dvec3& v : document.mesh.vertices) {
     fmt::format_to(out, "v {} {} {}\n", static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
   }
-  for (std::uint32_t material = 0; material < document.materials.size(); ++material) {
-    bool named = false;
-    for (const Triangle& triangle : document.mesh.triangles) {
-      if (document.material_of[triangle.surface] != material) continue;
-      if (!named) fmt::format_to(out, "usemtl {}\n", word_of(document.materials[material].name, "default"));
-      named = true;
-      const auto& v = triangle.vertices;
-      fmt::format_to(out, "f {} {} {}\n", v[0] + 1, v[1] + 1, v[2] + 1);
+  for (const MeshPart& part : document.parts) {
+    fmt::format_to(out, "o {}\n", word_of(part.name, "mesh"));
+    for (std::uint32_t material = 0; material < document.materials.size(); ++material) {
+      bool named = false;
+      for (const std::uint32_t t : part.triangles) {
+        const Triangle& triangle = document.mesh.triangles[t];
+        if (document.material_of[triangle.surface] != material) continue;
+        if (!named) fmt::format_to(out, "usemtl {}\n", words[material]);
+        named = true;
+        const auto& v = triangle.vertices;
+        fmt::format_to(out, "f {} {} {}\n", v[0] + 1, v[1] + 1, v[2] + 1);
+      }
     }
   }
   return to_bytes({text.data(), text.size()});
@@ -100,12 +130,17 @@ std::vector<std::uint8_t> encode_obj(const MeshDocument& document, std::string_v
 
 std::vector<std::uint8_t> encode_mtl(const MeshDocument& document) {
   std::string text;
-  for (const MeshMaterial& m : document.materials) {
+  const std::vector<std::string> words = material_words(document);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const MeshMaterial& m = document.materials[i];
     // The format does not say whether Kd is linear. The sRGB signal suits readers that show Kd as it is.
-    const auto bytes = color_bytes(m);
+    const auto bytes = color_bytes(m.color);
     const glm::dvec3 signal = glm::dvec3(bytes[0], bytes[1], bytes[2]) / 255.0;
-    text += fmt::format("newmtl {}\nKd {}\nKe {}\nd {:.6g}\nPr {:.6g}\nPm {:.6g}\n", word_of(m.name, "default"),
-                        mtl_color(signal), mtl_color(m.emission), m.opacity, m.roughness, m.metalness);
+    text += fmt::format("newmtl {}\nKd {}\nKe {}\nd {:.6g}\nPr {:.6g}\nPm {:.6g}\n", words[i], mtl_color(signal),
+                        mtl_color(m.emission), m.opacity, m.roughness, m.metalness);
+    if (m.transmission > 0) {
+      text += fmt::format("Tf {}\nNi {:.6g}\n", mtl_color(m.transmission * m.color), m.ior);
+    }
   }
   return to_bytes(text);
 }

@@ -22,7 +22,8 @@ TEST_CASE("cli: mesh writes every format and states its bound", "[cli]") {
     const Result result = folder.run("mesh two.json --resolution 32 --unit mm -o part." + ending);
     CHECK(result.code == 0);
     CHECK(result.out.empty());
-    CHECK_THAT(result.err, Contains("wrote part." + ending) && Contains("2 components, 6") && Contains(" mm\n"));
+    CHECK_THAT(result.err,
+               Contains("wrote part." + ending) && Contains("2 bodies, 0 hollows, 6") && Contains(" mm\n"));
     CHECK_THAT(result.err, Contains("every point of the mesh is within 0.0") && Contains("of the surface (proved)"));
     CHECK(folder.has("part." + ending));
   }
@@ -35,10 +36,39 @@ TEST_CASE("cli: mesh turns y to z on request, and takes a tolerance", "[cli]") {
   const Folder folder;
   const Result result = folder.run("mesh two.json --tolerance 0.2 --up z -o part.obj");
   CHECK(result.code == 0);
-  CHECK_THAT(result.err, Contains("within 0.2"));
+  CHECK_THAT(result.err, Contains("within 0.1999"));
   const Result named = folder.run("mesh ball.json -q --resolution 16");
   CHECK(named.code == 0);
   CHECK(folder.has("ball.stl"));
+}
+
+// A tolerance of 0.3 was printed as a bound of 0.3002.
+TEST_CASE("cli: mesh prints a bound that is not above the tolerance, and its direction", "[cli]") {
+  const Folder folder;
+  for (const char* tolerance : {"0.3", "0.123456", "0.05"}) {
+    const Result result = folder.run("mesh two.json -o part.stl --tolerance " + std::string(tolerance));
+    const std::string before = "every point of the mesh is within ";
+    const std::size_t at = result.err.find(before);
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stod(result.err.substr(at + before.size())) <= std::stod(tolerance));
+    CHECK_THAT(result.err, Contains("may be further from the mesh"));
+  }
+}
+
+// A mesh of two files was left with one of them if the other could not be written.
+TEST_CASE("cli: an OBJ file and its materials appear both or not at all", "[cli]") {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path() / "a.mtl");
+  CHECK(folder.run("mesh two.json --resolution 16 -o a.obj").code == 74);
+  CHECK_FALSE(folder.has("a.obj"));
+  folder.write("b.json", folder.read("two.json"));
+  std::filesystem::create_directory(folder.path() / "b_c.obj");
+  CHECK(folder.run("mesh b.json --resolution 16 -o b_c.obj").code == 74);
+  CHECK_FALSE(folder.has("b_c.mtl"));
+  const Result spaces = folder.run("mesh two.json --resolution 16 -o \"d e.obj\"");
+  CHECK(spaces.code == 0);
+  CHECK_THAT(folder.read("d e.obj"), Contains("mtllib d_e.mtl\n"));
+  CHECK(folder.has("d_e.mtl"));
 }
 
 TEST_CASE("cli: mesh of a scene without end names the box", "[cli]") {

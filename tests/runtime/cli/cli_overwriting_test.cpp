@@ -12,11 +12,11 @@ namespace {
 const std::string kLibrary = "fathom 1\ndef ball(r) = sphere(r)\n";
 const std::string kScene = R"(fathom 1
 import "lib.fathom" as lib
-import "inner/model.json"() as model
+import "inner/model.json" as model
 background image(file = "sky.pfm")
 camera(eye = [0, 0, 5], look_at = [0, 0, 0])
-lib.ball(1)
-model
+object lib.ball(1)
+object model.scene
 )";
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "runtime/mesh/contour.h"
 
-#include "runtime/mesh/find_cells.h"
+#include "runtime/mesh/lattice/find_cells.h"
 #include "tests/runtime/mesh/mesh_checks.h"
 #include "tests/support/catch.h"
 #include "tests/support/compiled.h"

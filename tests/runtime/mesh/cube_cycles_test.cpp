@@ -1,7 +1,8 @@
-#include "runtime/mesh/cube_cycles.h"
-#include "tests/support/catch.h"
+#include "runtime/mesh/lattice/cube_cycles.h"
 
 #include <set>
+
+#include "tests/support/catch.h"
 
 namespace fathom::cube_cycles_test {
 

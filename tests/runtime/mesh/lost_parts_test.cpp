@@ -1,4 +1,4 @@
-#include "runtime/mesh/lost_parts.h"
+#include "runtime/mesh/lost/lost_parts.h"
 
 #include "tests/runtime/mesh/mesh_checks.h"
 #include "tests/support/catch.h"
@@ -22,16 +22,16 @@ TEST_CASE("lost parts: a thin plate is named, and measured", "[mesh]") {
       objects(R"({"name": "plate", "type": "box", "half_size": [0.4, 0.008, 0.4], "translate": [0, 0.813, 0]})"));
   const MeshResult result = meshed(scene, 40);
   REQUIRE(result.end == MeshResult::End::Done);
-  CHECK(measure(result.mesh).components == 1);
+  CHECK(measure(result.mesh).bodies == 1);
   REQUIRE(result.lost.size() == 1);
   CHECK(scene.surfaces[result.lost[0].surface].name == "plate");
   CHECK_FALSE(result.lost[0].is_gap);
   CHECK(result.lost[0].place.y == Approx(0.813).margin(0.0081));
   CHECK(result.lost[0].thickness == Approx(0.016).margin(result.cell / 16));
-  CHECK(result.lost[0].cells > 100);
+  CHECK(result.lost[0].places > 100);
   const MeshResult fine = meshed(scene, 2.4 / 0.016);
   CHECK(fine.lost.empty());
-  CHECK(measure(fine.mesh).components == 2);
+  CHECK(measure(fine.mesh).bodies == 2);
 }
 
 TEST_CASE("lost parts: a small ball and a narrow gap are named", "[mesh]") {

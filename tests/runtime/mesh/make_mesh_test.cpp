@@ -42,7 +42,7 @@ TEST_CASE("mesh: points of the mesh are within the proved bound of closed forms"
       CHECK(faults_of(result.mesh) == MeshFaults{});
       CHECK(largest_distance(result.mesh, scene_case.distance) <= result.bound);
       CHECK(result.bound < 0.5 * result.cell);
-      CHECK(measure(result.mesh).components == 1);
+      CHECK(measure(result.mesh).bodies == 1);
       CHECK(measure(result.mesh).volume == Approx(scene_case.volume).epsilon(0.015));
       CHECK(result.lost.empty());
     }

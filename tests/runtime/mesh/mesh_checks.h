@@ -11,6 +11,7 @@
 
 #include "runtime/mesh/make_mesh.h"
 #include "runtime/mesh/mesh.h"
+#include "runtime/mesh/mesh_measures.h"
 #include "tests/support/catch.h"
 
 namespace fathom::test {

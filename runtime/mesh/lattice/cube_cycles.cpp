@@ -1,4 +1,4 @@
-#include "runtime/mesh/cube_cycles.h"
+#include "runtime/mesh/lattice/cube_cycles.h"
 
 namespace fathom::runtime {
 namespace {

@@ -1,4 +1,4 @@
-#include "runtime/mesh/find_cells.h"
+#include "runtime/mesh/lattice/find_cells.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/mesh/mesh_field.h"
+#include "runtime/mesh/lattice/mesh_field.h"
 
 #include <algorithm>
 #include <cmath>

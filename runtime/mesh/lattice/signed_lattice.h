@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "runtime/mesh/cube_cycles.h"
-#include "runtime/mesh/lattice.h"
-#include "runtime/mesh/mesh_field.h"
+#include "runtime/mesh/lattice/cube_cycles.h"
+#include "runtime/mesh/lattice/lattice.h"
+#include "runtime/mesh/lattice/mesh_field.h"
 
 namespace fathom::runtime {
 
@@ -32,6 +32,8 @@ class SignedLattice {
   // Bit i: corner i of the cell is inside the solid.
   unsigned inside(std::uint32_t cell) const { return inside_[cell]; }
   bool is_crossed(std::uint32_t cell) const { return inside_[cell] != 0 && inside_[cell] != 0xff; }
+  const KeyMap& corners() const { return corners_; }
+  bool is_corner_inside(std::uint32_t corner) const { return corner_inside_[corner] != 0; }
   // Edges whose ends have different signs, and true if the lower end is inside.
   const KeyMap& edges() const { return edges_; }
   bool is_lower_inside(std::uint32_t edge) const { return lower_inside_[edge] != 0; }

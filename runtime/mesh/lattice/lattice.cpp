@@ -1,4 +1,4 @@
-#include "runtime/mesh/lattice.h"
+#include "runtime/mesh/lattice/lattice.h"
 
 #include <cmath>
 

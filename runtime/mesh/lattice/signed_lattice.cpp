@@ -1,4 +1,4 @@
-#include "runtime/mesh/signed_lattice.h"
+#include "runtime/mesh/lattice/signed_lattice.h"
 
 #include <memory>
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "runtime/mesh/lattice.h"
-#include "runtime/mesh/mesh_field.h"
+#include "runtime/mesh/lattice/lattice.h"
+#include "runtime/mesh/lattice/mesh_field.h"
 
 namespace fathom::runtime {
 
