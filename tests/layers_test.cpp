@@ -59,6 +59,8 @@ const std::vector<std::string> kFolders = {
     "runtime/light",
     "runtime/path",
     "runtime/slice",
+    "runtime/mesh/lattice",
+    "runtime/mesh/lost",
     "runtime/mesh",
     "runtime/mesh/files",
     "runtime",

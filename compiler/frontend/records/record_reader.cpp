@@ -181,6 +181,9 @@ std::vector<std::string> retype(const Value& value, const Value& written, const 
   if (spec.type == ValueType::Integer && number && std::holds_alternative<std::string>(written.data)) {
     return {about(spec)[0], "round(...), floor(...) and ceil(...) make whole numbers"};
   }
+  if (spec.type == ValueType::Rotation && number) {
+    return {fmt::format("[0, {}, 0] turns about y", std::get<double>(value.data))};
+  }
   if (spec.type == ValueType::Nodes && std::holds_alternative<syntax::Record>(value.data)) {
     return {"put the node in brackets: [{...}]"};
   }

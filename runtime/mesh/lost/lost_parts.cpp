@@ -32,7 +32,7 @@ std::vector<Group> group(const SignedLattice& signs, const std::vector<ThinPlace
   return groups;
 }
 
-// Examines the places. Those of a group after one in a sheet are taken for places of that sheet.
+// Examines the places. In a group, all after one in a sheet are taken for places of that sheet.
 std::vector<ThinRegion> examine_all(const MeshField& field, const CellLattice& lattice, const SignedLattice& signs,
                                     const std::vector<ThinPlace>& places, int threads) {
   std::vector<ThinRegion> regions(places.size());

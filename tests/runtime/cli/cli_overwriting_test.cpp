@@ -14,7 +14,7 @@ const std::string kScene = R"(fathom 1
 import "lib.fathom" as lib
 import "inner/model.json" as model
 background image(file = "sky.pfm")
-camera(eye = [0, 0, 5], look_at = [0, 0, 0])
+camera(position = [0, 0, 5], target = [0, 0, 0])
 object lib.ball(1)
 object model.scene
 )";

@@ -122,7 +122,9 @@ const Node* Evaluator::node_of(const Value& value, const char* what) {
   if (value.is(Type::Node)) return value.node;
   if (!value.is(Type::List)) {
     fail("E0807", value.span, fmt::format("{} takes a node, not {}", what, describe(value)),
-         {"such as sphere(1)"});
+         {value.is(Type::Number) && what[0] == '`' && what[1] >= 'a'
+              ? "such as sphere(1); a number that belongs to the call is named, as t = 0.5"
+              : "such as sphere(1)"});
   }
   if (value.list->of.empty()) {
     fail("E0107", value.span, fmt::format("{} takes a node, and this list has none", what), {});
