@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "compiler/frontend/records/css_colors.h"
 #include "compiler/frontend/records/records.h"
 #include "compiler/shapes/node_table.h"
 
@@ -56,9 +57,12 @@ OrderedJson record_schema(const RecordSpec& record, bool type_required);
 // True if the property distinguishes the records of a family.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
-// Returns the schema of a code or a name.
+// Returns the schema of a colour as a code or a name.
 OrderedJson color_text_schema() {
-  return {{"type", "string"}, {"pattern", "^(#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})|[^#].*)$"}};
+  OrderedJson names = OrderedJson::array();
+  for (const NamedColor& color : kCssColors) names.push_back(color.name);
+  const OrderedJson code = {{"type", "string"}, {"pattern", "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"}};
+  return either(code, {{"enum", std::move(names)}});
 }
 
 // Returns the schema of a grey or a colour. A colour string matches the string schema for formulas.
