@@ -52,11 +52,11 @@ ThinRegionSearch::Section ThinRegionSearch::along(const ProbedPoint& from, glm::
 // Climbs to the middle of the part: from ball to larger ball, no further than some radii from the start, and up to a
 // ball too wide for a thin part.
 ProbedPoint ThinRegionSearch::middle_of(const ProbedPoint& from) {
-  constexpr int kMostSteps = 64;
+  constexpr int kMaxSteps = 64;
   constexpr double kMostRadii = 2.5, kGrowth = 1.001;
   ProbedPoint at = from;
   double share = kStepShare;
-  for (int step = 0; step < kMostSteps && share > 0x1p-6 && !is_thick(at); ++step) {
+  for (int step = 0; step < kMaxSteps && share > 0x1p-6 && !is_thick(at); ++step) {
     places_.clear();
     for (const glm::dvec3& direction : directions()) places_.push_back(at.place + share * at.radius * direction);
     probe_.at(places_, around_);
