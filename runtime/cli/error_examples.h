@@ -1,4 +1,4 @@
-// An example of each code of an error or a warning: a file, the line `----- expected`, and its message. CMake embeds
+// An example of each code of an error or a warning that a text can show: a file, the line `----- expected`, and its message. CMake embeds
 // one of the files in tests/golden/diagnostics per code, a text before a JSON scene.
 // Tested by: tests/runtime/cli/cli_explain_test.cpp
 #pragma once
