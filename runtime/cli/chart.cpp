@@ -192,8 +192,8 @@ class Charts {
 std::variant<std::vector<SceneInput>, ExitCode> read_scenes(const ChartRequest& request, const Streams& streams) {
   std::vector<SceneInput> sources;
   if (request.scene.path.empty()) {
-    for (const ChartScene& scene : chart_scenes()) {
-      sources.push_back({compiler::Source(std::string(scene.path), std::string(scene.text)), std::nullopt});
+    for (const compiler::EmbeddedFile& scene : chart_scenes()) {
+      sources.push_back({compiler::Source(std::string(scene.name), std::string(scene.text)), std::nullopt});
     }
     return sources;
   }
@@ -239,8 +239,7 @@ int run_chart(std::span<const std::string> args, const Streams& streams) {
   const std::filesystem::path folder = request.folder;
   std::vector<std::string> texts;
   for (const char* name : {"index.html", "chart.csv", "images.csv"}) texts.push_back((folder / name).string());
-  if (const auto code = claim_outputs(texts, streams)) return *code;
-  if (const auto problem = runtime::check_file_path(texts.front())) return fail(streams, kIo, *problem);
+  if (const auto code = check_output_files(texts, streams)) return *code;
 
   Charts charts(request, streams);
   for (const auto& [name, scene] : std::get<std::vector<NamedScene>>(scenes)) charts.add(scene, name);

@@ -72,9 +72,7 @@ std::optional<ExitCode> check_output(const std::string& output, const Streams& s
     return fail(streams, kUsage,
                 fmt::format("`{}` is the name of {}, and this writes a compiled scene", output, *kind), help);
   }
-  if (const auto code = claim_outputs({output}, streams)) return code;
-  if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
-  return std::nullopt;
+  return check_output_files({output}, streams);
 }
 
 }  // namespace

@@ -1,17 +1,14 @@
-// An example of each code of an error or a warning that a text can show: a file, the line `----- expected`, and its message. CMake embeds
-// one of the files in tests/golden/diagnostics per code, a text before a JSON scene.
+// An example of each code of an error or a warning that a text can show: a file, the line `----- expected`, and its
+// message. CMake embeds one of the files in tests/golden/diagnostics per code, a text before a JSON scene.
 // Tested by: tests/runtime/cli/cli_explain_test.cpp
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "compiler/source/embedded_file.h"
 
 namespace fathom::cli {
 
-struct ErrorExample {
-  std::string_view code, text;
-};
-
-std::span<const ErrorExample> error_examples();
+std::span<const compiler::EmbeddedFile> error_examples();
 
 }  // namespace fathom::cli

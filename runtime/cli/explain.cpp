@@ -37,7 +37,7 @@ std::string indented(std::string_view text) {
 std::string describe(const compiler::ErrorCode& row) {
   std::string text = fmt::format("{}: {}\n", row.code, row.meaning);
   const auto examples = error_examples();
-  const auto example = std::ranges::find(examples, row.code, &ErrorExample::code);
+  const auto example = std::ranges::find(examples, row.code, &compiler::EmbeddedFile::name);
   if (example == examples.end()) return text;
   const std::size_t end = example->text.find(kExpected);
   return text + "\nThis file\n\n" + indented(example->text.substr(0, end)) + "\ngets this message:\n\n" +

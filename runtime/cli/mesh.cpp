@@ -2,7 +2,9 @@
 //
 //     $ fathom mesh part.fathom -o part.3mf --tolerance 0.05 --unit mm
 //     wrote part.3mf: 2348 triangles, 1176 vertices, 1 body, 0 hollows, 40 x 25 x 10 mm
-//     every point of the mesh is within 0.0375 of the surface (proved)
+//     0 crossings, 0 folds, 0 islands
+//     every point of the mesh is within 0.0375 of the surface (proved); parts of the surface thinner than 0.02884 may
+//     be further from the mesh
 //
 // Tested by: tests/runtime/cli/cli_mesh_test.cpp
 #include <fmt/format.h>
@@ -248,11 +250,7 @@ void summarise(const MeshRequest& request, const compiler::CompiledScene& scene,
 int run_mesh(std::span<const std::string> args, const Streams& streams) {
   MeshRequest request;
   if (const auto code = parse(args, streams, request)) return *code;
-  const std::vector<std::string> outputs = outputs_of(request);
-  if (const auto code = claim_outputs(outputs, streams)) return *code;
-  for (const std::string& output : outputs) {
-    if (const auto problem = runtime::check_file_path(output)) return fail(streams, kIo, *problem);
-  }
+  if (const auto code = check_output_files(outputs_of(request), streams)) return *code;
   auto source = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&source)) return *code;
   const auto compiled = compile_scene(std::get<SceneInput>(std::move(source)), request.scene, streams);

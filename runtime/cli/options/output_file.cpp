@@ -193,13 +193,16 @@ std::optional<ExitCode> check_files(const Streams& streams) {
               {"give each output a name of its own"});
 }
 
-std::optional<ExitCode> check_outputs(std::span<const Output> outputs, const Streams& streams) {
-  const std::vector<std::string> paths = paths_of(outputs);
-  if (const auto code = claim_outputs(paths, streams)) return code;
-  for (const std::string& path : paths) {
+std::optional<ExitCode> check_output_files(const std::vector<std::string>& outputs, const Streams& streams) {
+  if (const auto code = claim_outputs(outputs, streams)) return code;
+  for (const std::string& path : outputs) {
     if (const auto problem = runtime::check_file_path(path)) return fail(streams, kIo, *problem);
   }
   return std::nullopt;
+}
+
+std::optional<ExitCode> check_outputs(std::span<const Output> outputs, const Streams& streams) {
+  return check_output_files(paths_of(outputs), streams);
 }
 
 }  // namespace fathom::cli

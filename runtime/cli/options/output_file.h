@@ -80,8 +80,9 @@ ExitCode write_text_output(const std::string& text, const std::optional<std::str
 std::optional<ExitCode> check_image_size(double width, double height, const compiler::Limits& limits,
                                          const Streams& streams);
 
-// Prints a message and returns an exit code if an output file is known in advance not to be writable, or if it would
+// Print a message and return an exit code if an output file is known in advance not to be writable, or if it would
 // overwrite a file that the command has read or another output.
+std::optional<ExitCode> check_output_files(const std::vector<std::string>& outputs, const Streams& streams);
 std::optional<ExitCode> check_outputs(std::span<const Output> outputs, const Streams& streams);
 
 // True if an output with all layers goes to standard output.

@@ -1,10 +1,19 @@
 #include "runtime/cli/options/streams.h"
 
 #include <ostream>
+#include <system_error>
 
 #include "vm/encoding/printable.h"
 
 namespace fathom::cli {
+
+void UsedFiles::add(const std::string& path, Use use) {
+  std::error_code ignored;
+  const auto canonical = std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  const auto [entry, added] = uses_.emplace(canonical, use);
+  const bool shared = use == Use::Input && entry->second == Use::Input;
+  if (!added && !shared && !conflict_) conflict_ = path;
+}
 
 ExitCode fail(const Streams& streams, ExitCode code, std::string_view message, const Help& help) {
   streams.err << (streams.color ? "\033[1;31merror\033[0m: " : "error: ") << vm::printable(message) << '\n';

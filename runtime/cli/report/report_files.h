@@ -1,10 +1,12 @@
-// The text of runtime/cli/report/report.css, which the build puts into the program.
+// The files of a report's page: its style.
 #pragma once
 
-#include <string_view>
+#include <span>
+
+#include "compiler/source/embedded_file.h"
 
 namespace fathom::cli {
 
-extern const std::string_view kReportStyle;
+std::span<const compiler::EmbeddedFile> report_files();
 
 }  // namespace fathom::cli

@@ -111,7 +111,7 @@ std::string report_page(const ReportContents& contents) {
   }
   const std::string version = fmt::format("{}{}{}", kVersion, kCommit.empty() ? "" : " ", kCommit);
   return fmt::format(fmt::runtime(kPage), fmt::arg("title", escape_markup(contents.scene.source.name())),
-                     fmt::arg("style", kReportStyle), fmt::arg("summary", escape_markup(contents.scene.summary)),
+                     fmt::arg("style", report_files().front().text), fmt::arg("summary", escape_markup(contents.scene.summary)),
                      fmt::arg("command", escape_markup(contents.command)), fmt::arg("version", version),
                      fmt::arg("links", links), fmt::arg("sections", html));
 }

@@ -1,16 +1,12 @@
-// The files of the viewer's page, which the build puts into the program.
+// The files of the viewer's page: those of runtime/cli/view/page, and the scripts of runtime/live.
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "compiler/source/embedded_file.h"
 
 namespace fathom::cli {
 
-struct PageFile {
-  std::string_view name, text;
-};
-
-// The files of runtime/cli/view/page, and the scripts of runtime/live.
-std::span<const PageFile> page_files();
+std::span<const compiler::EmbeddedFile> page_files();
 
 }  // namespace fathom::cli

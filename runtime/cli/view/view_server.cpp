@@ -118,7 +118,7 @@ struct ViewServer::Server {
   }
 
   void add_routes() {
-    for (const PageFile& file : page_files()) {
+    for (const compiler::EmbeddedFile& file : page_files()) {
       const std::string name = file.name == "index.html" ? "" : std::string(file.name);
       std::string path = guard->root() + name;
       http.Get(escape(path), [file](const httplib::Request&, httplib::Response& response) {

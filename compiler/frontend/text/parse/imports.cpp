@@ -13,7 +13,7 @@
 #include "compiler/frontend/syntax/json_error.h"
 #include "compiler/frontend/text/parse/lexer.h"
 #include "compiler/frontend/text/parse/parser.h"
-#include "compiler/frontend/text/parse/standard_library.h"
+#include "compiler/frontend/text/parse/standard_files.h"
 
 namespace fathom::compiler::text {
 namespace {
@@ -27,16 +27,30 @@ std::string joined(const std::string& from, const std::string& path) {
   return (fs::path(from).parent_path() / path).lexically_normal().generic_string();
 }
 
+// True if an import's path, as written, is one of the library.
+bool is_standard(std::string_view path) { return path.starts_with("std/"); }
+
+// Returns the file at a path such as "std/gears" or "std/gears.fathom", or nullptr.
+const EmbeddedFile* find_standard(std::string_view path) {
+  constexpr std::string_view kFolder = "std/", kEnding = ".fathom";
+  if (!is_standard(path)) return nullptr;
+  path.remove_prefix(kFolder.size());
+  if (path.ends_with(kEnding)) path.remove_suffix(kEnding.size());
+  const auto files = standard_files();
+  const auto found = std::ranges::find(files, path, &EmbeddedFile::name);
+  return found == files.end() ? nullptr : &*found;
+}
+
 // Returns the location of an imported path, relative to the scene's folder. `from` is the location of the importer.
 std::string path_of(const std::string& path, const std::string& from) {
   if (!is_standard(path)) return joined(from, path);
-  const StandardFile* const file = find_standard(path);
+  const EmbeddedFile* const file = find_standard(path);
   return file ? fmt::format("std/{}.fathom", file->name) : path;
 }
 
 std::string names_of_standard_files() {
   std::vector<std::string> names;
-  for (const StandardFile& file : standard_files()) names.push_back(fmt::format("std/{}", file.name));
+  for (const EmbeddedFile& file : standard_files()) names.push_back(fmt::format("std/{}", file.name));
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -147,7 +161,7 @@ class ImportLoader {
 
   const Source* read(const std::string& path, Span span) {
     if (const Source* known = known_file(path, false)) return known;
-    if (const StandardFile* file = find_standard(path)) return add_source(path, std::string(file->text), false, span);
+    if (const EmbeddedFile* file = find_standard(path)) return add_source(path, std::string(file->text), false, span);
     if (is_standard(path)) {
       fail(span, fmt::format("the library has no `{}`", path), {"there are " + names_of_standard_files()});
       return nullptr;

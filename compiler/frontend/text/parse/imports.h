@@ -3,8 +3,8 @@
 //
 //     import "lib/gears.fathom"(module = 0.3) as gears
 //
-// A path is relative to the file that contains it, with / between names, or one of the library (standard_library.h). Files in other formats are converted to
-// text, as `fathom convert` does.
+// A path is relative to the file that contains it, with / between names, or one of the library (standard_files.h).
+// Files in other formats are converted to text, as `fathom convert` does.
 // Tested by: tests/compiler/frontend/text/text_imports_test.cpp, tests/golden/diagnostics (E0810)
 #pragma once
 
