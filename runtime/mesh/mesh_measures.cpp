@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <unordered_map>
 
-#include "compiler/geometry/box.h"
+#include "compiler/geometry/box_tree.h"
 #include "vm/program/parallel_for.h"
 
 namespace fathom::runtime {
@@ -29,93 +28,25 @@ bool cuts(glm::dvec3 p, glm::dvec3 q, const Corners& t) {
   return side != 0 && side_of(p, q, t[1], t[2]) == side && side_of(p, q, t[2], t[0]) == side;
 }
 
-// A tree of boxes over the triangles (Ericson, "Real-time collision detection", 2005, chapter 6): each node halves
-// its part of an order of the triangles.
-class TriangleTree {
- public:
-  explicit TriangleTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0u);
-    for (std::uint32_t t = 0; t < order_.size(); ++t) {
-      compiler::Box box;
-      for (const glm::dvec3& corner : corners(t)) box = unite(box, {corner, corner});
-      boxes_.push_back(box);
-    }
-    std::size_t leaves = 1;
-    while (leaves * kLeaf < order_.size()) leaves *= 2;
-    nodes_.resize(2 * leaves);
-    if (!order_.empty()) build(1, 0, order_.size());
+// Corners of a triangle, rounded as files hold them.
+Corners rounded_corners(const TriangleMesh& mesh, std::size_t t) {
+  Corners corners = mesh.corners(mesh.triangles[t]);
+  for (glm::dvec3& corner : corners) corner = glm::dvec3(glm::vec3(corner));
+  return corners;
+}
+
+// True if an edge of triangle `t` cuts `u`. Edges with an end in common with `u` only touch it.
+bool has_cutting_edge(const TriangleMesh& mesh, std::size_t t, std::size_t u) {
+  const auto& from = mesh.triangles[t].vertices;
+  const auto& others = mesh.triangles[u].vertices;
+  const auto is_shared = [&](std::uint32_t v) { return v == others[0] || v == others[1] || v == others[2]; };
+  const Corners p = rounded_corners(mesh, t), q = rounded_corners(mesh, u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if (!is_shared(from[i]) && !is_shared(from[next]) && cuts(p[i], p[next], q)) return true;
   }
-
-  // Returns the number of triangles after `t` that cut t.
-  std::size_t count_after(std::uint32_t t) const { return count_after(t, 1, 0, order_.size()); }
-
- private:
-  static constexpr std::size_t kLeaf = 4;
-
-  Corners corners(std::uint32_t t) const {
-    Corners rounded = mesh_.corners(mesh_.triangles[t]);
-    for (glm::dvec3& corner : rounded) corner = glm::dvec3(glm::vec3(corner));
-    return rounded;
-  }
-
-  void build(std::size_t node, std::size_t first, std::size_t last) {
-    compiler::Box box;
-    for (std::size_t i = first; i < last; ++i) box = unite(box, boxes_[order_[i]]);
-    nodes_[node] = box;
-    if (2 * node >= nodes_.size()) return;
-    const glm::dvec3 size = box.hi - box.lo;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    const std::size_t middle = (first + last) / 2;
-    std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(first),
-                     order_.begin() + static_cast<std::ptrdiff_t>(middle),
-                     order_.begin() + static_cast<std::ptrdiff_t>(last), [&](std::uint32_t a, std::uint32_t b) {
-                       const double x = boxes_[a].lo[axis] + boxes_[a].hi[axis];
-                       const double y = boxes_[b].lo[axis] + boxes_[b].hi[axis];
-                       return x != y ? x < y : a < b;
-                     });
-    build(2 * node, first, middle);
-    build(2 * node + 1, middle, last);
-  }
-
-  static bool overlap(const compiler::Box& a, const compiler::Box& b) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (a.lo[axis] > b.hi[axis] || b.lo[axis] > a.hi[axis]) return false;
-    }
-    return true;
-  }
-
-  std::size_t count_after(std::uint32_t t, std::size_t node, std::size_t first, std::size_t last) const {
-    if (first == last || !overlap(boxes_[t], nodes_[node])) return 0;
-    std::size_t count = 0;
-    if (2 * node < nodes_.size()) {
-      const std::size_t middle = (first + last) / 2;
-      return count_after(t, 2 * node, first, middle) + count_after(t, 2 * node + 1, middle, last);
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      count += order_[i] > t && overlap(boxes_[t], boxes_[order_[i]]) && do_cross(t, order_[i]);
-    }
-    return count;
-  }
-
-  // Two triangles cross if an edge of one cuts the other. Edges with an end in common with the other only touch it.
-  bool do_cross(std::uint32_t t, std::uint32_t u) const { return has_cutting_edge(t, u) || has_cutting_edge(u, t); }
-  bool has_cutting_edge(std::uint32_t t, std::uint32_t u) const {
-    const auto& from = mesh_.triangles[t].vertices;
-    const auto& others = mesh_.triangles[u].vertices;
-    const auto is_shared = [&](std::uint32_t v) { return v == others[0] || v == others[1] || v == others[2]; };
-    const Corners p = corners(t), q = corners(u);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t next = (i + 1) % 3;
-      if (!is_shared(from[i]) && !is_shared(from[next]) && cuts(p[i], p[next], q)) return true;
-    }
-    return false;
-  }
-
-  const TriangleMesh& mesh_;
-  std::vector<std::uint32_t> order_;
-  std::vector<compiler::Box> boxes_;  // [triangle]
-  std::vector<compiler::Box> nodes_;  // [node], children of node n: 2 n and 2 n + 1
-};
+  return false;
+}
 
 }  // namespace
 
@@ -145,15 +76,24 @@ MeshMeasures measure(const TriangleMesh& mesh) {
 }
 
 std::size_t count_crossings(const TriangleMesh& mesh, int threads) {
-  const TriangleTree tree(mesh);
+  std::vector<compiler::Box> boxes;  // [triangle]
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    compiler::Box box;
+    for (const glm::dvec3& corner : rounded_corners(mesh, t)) box = unite(box, {corner, corner});
+    boxes.push_back(box);
+  }
+  const compiler::BoxTree tree(boxes);
   constexpr std::size_t kBatch = 256;
   const std::size_t count = mesh.triangles.size(), batches = (count + kBatch - 1) / kBatch;
   std::vector<std::size_t> found(batches);
   parallel_for(
-      threads, batches, [] { return 0; },
-      [&](int, std::size_t batch) {
+      threads, batches, [] { return std::vector<std::uint32_t>(); },
+      [&](std::vector<std::uint32_t>& near, std::size_t batch) {
         for (std::size_t t = batch * kBatch; t < std::min(count, (batch + 1) * kBatch); ++t) {
-          found[batch] += tree.count_after(static_cast<std::uint32_t>(t));
+          tree.find(boxes[t], near);
+          for (const std::uint32_t u : near) {
+            found[batch] += u > t && (has_cutting_edge(mesh, t, u) || has_cutting_edge(mesh, u, t));
+          }
         }
       });
   return std::accumulate(found.begin(), found.end(), std::size_t{0});

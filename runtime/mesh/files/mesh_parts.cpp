@@ -1,7 +1,6 @@
 // Parts of a mesh with the names of their objects.
 #include <algorithm>
 #include <map>
-#include <numeric>
 
 #include "runtime/mesh/files/mesh_file.h"
 #include "runtime/mesh/mesh_sets.h"

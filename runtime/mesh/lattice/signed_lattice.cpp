@@ -106,6 +106,14 @@ void SignedLattice::find_faces(const SignSource& source) {
   source.face_centres(faces_.keys(), open_);
 }
 
+std::optional<std::array<unsigned, 2>> SignedLattice::joined_corners(std::uint32_t cell, int face) const {
+  if (!is_ambiguous(inside_[cell], face)) return std::nullopt;
+  const std::array<int, 4> corners = face_corners(face);
+  const bool first_inside = inside_[cell] >> corners[0] & 1;
+  const std::size_t start = first_inside == is_open(face_key(place_of(cells_[cell]), face)) ? 0 : 1;
+  return std::array{static_cast<unsigned>(corners[start]), static_cast<unsigned>(corners[start + 2])};
+}
+
 CubeCycles SignedLattice::cycles(std::uint32_t cell) const {
   unsigned open = 0;
   for (int face = 0; face < kCubeFaces; ++face) {

@@ -3,8 +3,10 @@
 // Tested by: tests/runtime/mesh/contour_test.cpp
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +42,8 @@ class SignedLattice {
   // Faces with diagonal signs, each named by its lower corner and the axis across it.
   const KeyMap& ambiguous_faces() const { return faces_; }
   bool is_open(LatticeKey face) const { return open_[faces_.find(face)] != 0; }
+  // Returns the corners of a cell's ambiguous face that the mesh connects across it; nullopt for other faces.
+  std::optional<std::array<unsigned, 2>> joined_corners(std::uint32_t cell, int face) const;
   CubeCycles cycles(std::uint32_t cell) const;
 
  private:

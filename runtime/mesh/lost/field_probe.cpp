@@ -23,9 +23,9 @@ void FieldProbe::at(std::span<const glm::dvec3> places, std::vector<ProbedPoint>
     const glm::vec3 place = points_[i];
     const double error = static_cast<double>(field_.error(place, values_[i]));
     const double radius = std::abs(static_cast<double>(radii_[i])) - error;
+    // NaN proves nothing: max() returns its first argument then.
     out.push_back(
         {glm::dvec3(place), static_cast<double>(values_[i]), std::max(0.0, radius), field_.side(place, values_[i])});
-    if (!(out.back().radius >= 0)) out.back().radius = 0;  // NaN proves nothing
   }
 }
 

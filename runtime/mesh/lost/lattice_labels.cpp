@@ -41,7 +41,6 @@ void join_edges(const Elements& elements, std::uint32_t cell, DisjointSets& sets
 
 // Joins both sides of the edges of a piece of the surface, and corners across faces with diagonal signs.
 void join_pieces(const Elements& elements, std::uint32_t cell, DisjointSets& sets) {
-  const unsigned inside = elements.signs.inside(cell);
   const LatticePlace place = place_of(elements.signs.cells()[cell]);
   const CubeCycles cycles = elements.signs.cycles(cell);
   std::array<std::uint32_t, 4> firsts;
@@ -55,13 +54,8 @@ void join_pieces(const Elements& elements, std::uint32_t cell, DisjointSets& set
     for (const bool side : {false, true}) sets.join(elements.side(first, side), elements.side(edge, side));
   }
   for (int face = 0; face < kCubeFaces; ++face) {
-    if (!is_ambiguous(inside, face)) continue;
-    const bool open = elements.signs.is_open(face_key(place, face));
-    const std::array<int, 4> corners = face_corners(face);
-    const bool first_inside = inside >> corners[0] & 1;
-    const std::size_t start = first_inside == open ? 0 : 1;
-    sets.join(elements.corner(place, static_cast<unsigned>(corners[start])),
-              elements.corner(place, static_cast<unsigned>(corners[start + 2])));
+    const auto joined = elements.signs.joined_corners(cell, face);
+    if (joined) sets.join(elements.corner(place, (*joined)[0]), elements.corner(place, (*joined)[1]));
   }
 }
 

@@ -19,7 +19,8 @@ struct LostPart {
   bool is_gap;            // empty space within or between solids, and not a part of the solid
   bool is_torn;           // the mesh has pieces of it that are apart
   bool tapers;  // every place that was found is thinner nearby, as wedges and tips are: finer cells lose some, too
-  glm::dvec3 place;    // the thinnest place that was found, of a part that tapers the thickest
+  // Programs' coordinates: the thinnest place that was found, or the thickest if the part tapers.
+  glm::dvec3 place;
   double thickness;    // there, scene units; at most four cells
   std::size_t places;  // number of places that were found
 };

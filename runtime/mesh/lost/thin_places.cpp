@@ -77,12 +77,7 @@ class ThinPlaceSearch {
     };
     for (unsigned axis = 0; axis < 3; ++axis) add(corners[0], corners[1u << axis]);
     for (int face = 0; face < kCubeFaces; face += 2) {
-      if (!is_ambiguous(signs_.inside(cell), face)) continue;
-      const bool open = signs_.is_open(face_key(place_of(signs_.cells()[cell]), face));
-      const std::array<int, 4> at = face_corners(face);
-      const auto corner = [&](std::size_t i) { return corners[static_cast<std::size_t>(at[i])]; };
-      const std::size_t start = (corner(0).side == Side::Inside) == open ? 0 : 1;
-      add(corner(start), corner(start + 2));
+      if (const auto joined = signs_.joined_corners(cell, face)) add(corners[(*joined)[0]], corners[(*joined)[1]]);
     }
   }
 

@@ -23,8 +23,7 @@ struct ThinPlace {
   bool on_edge;        // the point lies between two corners of the other side that the mesh connects
 };
 
-// Returns candidates in the order of cells, at most one per cell, side and way of finding. The same for any number of
-// threads.
+// Returns candidates in the order of cells. The same for any number of threads.
 std::vector<ThinPlace> find_thin_places(const MeshField& field, const CellLattice& lattice,
                                         const SignedLattice& signs, int threads);
 

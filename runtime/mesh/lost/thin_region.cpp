@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <queue>
+#include <tuple>
 #include <unordered_set>
 
 namespace fathom::runtime {
@@ -191,7 +192,10 @@ ThinRegionSearch::Walked ThinRegionSearch::explore(const ProbedPoint& from) {
       key = key << 19 | (static_cast<std::uint64_t>(std::floor(at[axis]) + 0x1p18));
     return known.insert(key).second;
   };
-  const auto smaller = [](const ProbedPoint& a, const ProbedPoint& b) { return a.radius < b.radius; };
+  // Places break ties, which standard libraries order differently.
+  const auto smaller = [](const ProbedPoint& a, const ProbedPoint& b) {
+    return std::tie(a.radius, a.place.x, a.place.y, a.place.z) < std::tie(b.radius, b.place.x, b.place.y, b.place.z);
+  };
   std::priority_queue<ProbedPoint, std::vector<ProbedPoint>, decltype(smaller)> queue(smaller);
   queue.push(from);
   is_new(from);

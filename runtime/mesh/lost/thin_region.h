@@ -3,8 +3,8 @@
 // A walk over balls without a zero, the largest first, explores the part from one of its points, up to where corners
 // of the lattice are in sight: those are in the mesh. If the corners are of two pieces of the mesh, the mesh is torn
 // at that place. If the walk meets none, the mesh has nothing of the part. A part that goes on in all directions of a
-// plane is a sheet, and what lies on its two sides is one in the mesh. Tested by:
-// tests/runtime/mesh/mesh_counts_test.cpp
+// plane is a sheet, and what lies on its two sides is one in the mesh.
+// Tested by: tests/runtime/mesh/mesh_counts_test.cpp
 #pragma once
 
 #include "runtime/mesh/lost/field_probe.h"

@@ -4,6 +4,7 @@
 // A box and its lid 0.35 apart were one body with one hollow at a resolution of 60, without a warning: the gap lies
 // in cells that have signs of both kinds, which nothing searched.
 #include <algorithm>
+#include <string_view>
 
 #include "tests/runtime/mesh/mesh_checks.h"
 #include "tests/support/catch.h"
@@ -104,6 +105,10 @@ const Counted kScenes[] = {
      .25},
 };
 
+const Counted& scene_named(std::string_view name) {
+  return *std::ranges::find_if(kScenes, [&](const Counted& each) { return name == each.name; });
+}
+
 void check_counts(double resolution) {
   for (const Counted& each : kScenes) {
     const auto scene = test::compiled(std::string("fathom 1\n") + each.objects + "\n");
@@ -127,8 +132,7 @@ TEST_CASE("mesh counts: the same with cells a quarter as large", "[mesh][heavy]"
 
 TEST_CASE("mesh counts: the named tolerance keeps what was lost", "[mesh]") {
   for (const char* name : {"lid", "rooms", "dumbbell", "speck", "bubble", "shell", "pinhole"}) {
-    const Counted& each =
-        *std::ranges::find_if(kScenes, [&](const Counted& c) { return std::string(name) == c.name; });
+    const Counted& each = scene_named(name);
     const auto scene = test::compiled(std::string("fathom 1\n") + each.objects + "\n");
     const MeshResult coarse = meshed(scene, 24, false);
     INFO(name);
@@ -161,8 +165,8 @@ TEST_CASE("mesh counts: thicknesses of lost parts are right", "[mesh]") {
                {"object cylinder(radius = 1, half_height = 0.005)", 24, 0.01, false},
                {"object sphere(1).onion(0.01)", 32, 0.02, false},
                {"object box([1, 1, 0.01]).rotate([31, 17, 5])", 32, 0.02, false},
-               {kScenes[14].objects, 60, 0.35, true},
-               {kScenes[15].objects, 60, 0.35, true},
+               {scene_named("lid").objects, 60, 0.35, true},
+               {scene_named("turned lid").objects, 60, 0.35, true},
                {"object box([1, .5, .5]) - box([.003, 1, 1]).rotate([0, 20, 30])", 40, 0.006, true}};
   for (const auto& each : cases) {
     const auto scene = test::compiled(std::string("fathom 1\n") + each.objects + "\n");
