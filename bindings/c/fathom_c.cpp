@@ -37,10 +37,12 @@ struct Pointer {
 
 // Returns the error that the first of these arguments is NULL, which its function needs, or none.
 Error check_given(std::initializer_list<Pointer> pointers) {
-  for (const Pointer& each : pointers) {
-    if (each.value == nullptr) return fathom::library::bad_argument(std::string(each.name) + " is NULL");
-  }
-  return {};
+  return fathom::library::guard([&]() -> Error {
+    for (const Pointer& each : pointers) {
+      if (each.value == nullptr) return fathom::library::bad_argument(std::string(each.name) + " is NULL");
+    }
+    return {};
+  });
 }
 
 // Copies the error to the caller and returns its kind. A cut message ends at a whole character.

@@ -28,7 +28,8 @@ Error error_of(const runtime::MeshResult& result) {
 Error choose_box(const compiler::CompiledScene& scene, const MeshOptions& options, runtime::MeshBox& out) {
   std::optional<compiler::Box> wanted;
   if (options.box) {
-    wanted = compiler::Box{library::to_glm(options.box->lo) - scene.origin, library::to_glm(options.box->hi) - scene.origin};
+    wanted =
+        compiler::Box{library::to_glm(options.box->lo) - scene.origin, library::to_glm(options.box->hi) - scene.origin};
   }
   const auto chosen = runtime::mesh_box(scene, wanted);
   if (const auto* box = std::get_if<runtime::MeshBox>(&chosen)) {

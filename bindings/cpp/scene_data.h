@@ -24,7 +24,6 @@ struct __attribute__((visibility("hidden"))) Scene::Data {
   compiler::CompiledScene scene;
   compiler::Limits limits;
   compiler::Definitions definitions;  // values that the scene was compiled with
-  std::string folder;                 // of images that the scene names
   bool has_text = true;               // false for a compiled file without text
   // The scene is a model of another format: a render compiles it again, on a stage with a light and a camera.
   bool foreign = false;

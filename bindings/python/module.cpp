@@ -129,9 +129,8 @@ void bind_scene(py::module_& module) {
       .def("range", &range, py::arg("lo"), py::arg("hi"),
            "Bounds (..., 2) of the distances in the boxes from lo (..., 3) to hi (..., 3).")
       .def("march", &march, py::arg("origins"), py::arg("directions"), py::arg("t_max") = py::none(),
-           "Follows rays, given by arrays (..., 3), to the first surface. Returns Hits. A single origin or direction "
-           "is\n"
-           "that of all rays, as numpy broadcasts arrays.")
+           "Follows rays, given by arrays (..., 3), to the first surface. Returns Hits. A single origin or\n"
+           "direction is that of all rays, as numpy broadcasts arrays.")
       .def("render", &render, py::kw_only(), py::arg("width") = py::none(), py::arg("height") = py::none(),
            py::arg("samples") = py::none(), py::arg("seed") = py::none(), py::arg("denoise") = false,
            py::arg("threads") = 0, py::arg("time_limit") = py::none(), py::arg("progress") = py::none(),

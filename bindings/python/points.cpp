@@ -111,11 +111,6 @@ Vec3d point_at(const Points<T>& points, std::size_t i) {
   return {points.x[at], points.y[at], points.z[at]};
 }
 
-// Checks that two arguments have one shape.
-void check_shapes(const Shape& a, const Shape& b, const char* names) {
-  if (a != b) throw py::value_error(std::string(names) + " differ in shape");
-}
-
 // Reads two arrays of points, repeated to one shape as numpy broadcasts them.
 std::pair<PointArray<double>, PointArray<double>> read_both(const py::object& a, const py::object& b,
                                                             const char* name_a, const char* name_b) {
@@ -186,8 +181,7 @@ py::array nearest(const SceneObject& scene, const py::object& points) {
 }
 
 py::array range(const SceneObject& scene, const py::object& lo, const py::object& hi) {
-  const auto low = read_points<double>(lo, "lo"), high = read_points<double>(hi, "hi");
-  check_shapes(low.shape, high.shape, "lo and hi");
+  const auto [low, high] = read_both(lo, hi, "lo", "hi");
   std::vector<Box> boxes(low.points.count);
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = {point_at(low.points, i), point_at(high.points, i)};
   Shape shape = low.shape;

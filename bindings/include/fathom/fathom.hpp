@@ -239,7 +239,8 @@ class FATHOM_API Scene {
   // Several results at once.
   Error evaluate(Points<float> points, const Values<float>& out) const noexcept;
   Error evaluate(Points<double> points, const Values<double>& out) const noexcept;
-  // Intervals that contain all distances in each box, whose `lo` is nowhere above its `hi`, by interval arithmetic (Moore, "Interval Analysis", 1966).
+  // Intervals that contain all distances in each box, by interval arithmetic (Moore, "Interval Analysis", 1966). No
+  // box's `lo` is above its `hi` on any axis.
   Error range(std::span<const Box> boxes, std::span<Interval> out) const noexcept;
   // Follows rays to the first surface.
   Error march(std::span<const Ray> rays, std::span<Hit> out) const noexcept;
