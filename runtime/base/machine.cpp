@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -14,7 +13,7 @@
 namespace fathom::runtime {
 namespace {
 
-// Read the first numbers of a file. A file without them has no limit: "max 100000".
+// A file that does not begin with a number has no limit: "max 100000".
 std::optional<double> read_number(const std::filesystem::path& file) {
   double number = 0;
   std::ifstream text(file);

@@ -271,7 +271,8 @@ constexpr std::string_view kVector = "a vector is a list: [1, 2, 3]",
                            kSmoothUnion = "a smooth union is a +{0.1} b, a smooth cut a -{0.1} b",
                            kFillet = "an edge where bodies meet is rounded by a +{round = 0.1} b or a -{round = 0.1} b, "
                                      "all edges by body.round(0.1)",
-                           kFog = "there is no air that scatters light; a body's inside tints it: transparent(absorption = 0.5)",
+                           kFog = "there is no air that scatters light; a body's inside tints it: "
+                                  "transparent(absorption = 0.5)",
                            kThread = "the library has bolts and nuts: import \"std/screws\" as screws";
 
 // The terms are those of GLSL, OpenSCAD, curv and libraries of distance functions.
@@ -304,6 +305,12 @@ constexpr ForeignTerm kForeignTerms[] = {
     {"mist", kFog},
     {"volume", kFog},
     {"at", "a body is moved by body.translate([1, 2, 3])"},
+    // Functions of numbers, which shaders apply to the distances of bodies.
+    {"min", "a union is written a + b"},
+    {"max", "an intersection is written a & b, a cut a - b"},
+    {"mix", "what lies between two bodies is morph(a, b, t = 0.5), a soft join a +{0.2} b"},
+    {"mod", "copies on a grid are body.repetition(period = [2, 0, 0])"},
+    {"abs", "a shell is body.onion(0.05), a mirrored body body.mirror([1, 0, 0])"},
 };
 
 }  // namespace

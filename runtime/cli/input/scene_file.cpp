@@ -198,8 +198,8 @@ std::variant<compiler::Animation, ExitCode> read_animation(SceneInput& input, co
   compiler::Diagnostics diagnostics;
   const compiler::Definitions definitions =
       input.stored ? both(input.stored->contents.definitions, arguments.definitions) : arguments.definitions;
-  const auto animation =
-      compiler::read_animation(input.source, diagnostics, arguments.limits, definitions, import_reader(arguments, streams));
+  const auto animation = compiler::read_animation(input.source, diagnostics, arguments.limits, definitions,
+                                                  import_reader(arguments, streams));
   if (animation) return *animation;  // compile_scene() reports the warnings later
   print(diagnostics, named(input.source, arguments.path), arguments, streams);
   return about_definitions(diagnostics) ? kUsage : kBadScene;

@@ -180,7 +180,7 @@ ExitCode RenderJob::end(runtime::RenderResult& result) {
   if (checkpoint_) result.stats.checkpoints = static_cast<std::uint64_t>(checkpoint_->written());
   // An image without samples would replace a file that may be good. The film of an incomplete unit must not look
   // complete.
-  const bool pictures = request_.unit ? !undone : !undone || result.film.samples() > 0;
+  const bool pictures = !undone || (!request_.unit && result.film.samples() > 0);
   if (request_.denoise && pictures) runtime::denoise(result.film, result.settings.threads);
   if (const auto problem = write_all(result, pictures)) return fail_to_write(*problem, result, keep);
   if (!pictures && !request_.unit) note(streams_, kNoPictureYet);
@@ -245,7 +245,9 @@ std::optional<std::string> RenderJob::write_all(runtime::RenderResult& result, b
   if (pictures) problem = write_image_files(image_files_of(request_), header_, result, seconds, lines, streams_);
   if (pictures && request_.cost_map && !problem) problem = write_cost_maps(*request_.cost_map, result.film, lines);
   result.stats.peak_memory = runtime::peak_memory();
-  if (request_.stats_json && !problem) problem = write_stats(*request_.stats_json, scene_.source.name(), header_, result.stats, streams_);
+  if (request_.stats_json && !problem) {
+    problem = write_stats(*request_.stats_json, scene_.source.name(), header_, result.stats, streams_);
+  }
   if (!request_.quiet) print_closing(result, lines);
   return problem;
 }

@@ -45,7 +45,7 @@ LightSample sample(const Lights& lights, const LightSampleContext& query, std::u
   return sample_one(lights, query, choice, sampler.next2());
 }
 
-// What a ray sees beyond the scene, and the density with which light sampling finds it.
+// Radiance of a ray that leaves the scene, and the density of its direction in light sampling.
 struct Background {
   glm::vec3 radiance;
   float pdf;

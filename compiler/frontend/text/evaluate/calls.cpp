@@ -120,16 +120,6 @@ Value Evaluator::call_definition(const Expr& expr, const Statement& definition) 
   return result;
 }
 
-// Returns how the operation is written that a function of two distances makes of bodies in a shader, or "".
-std::string of_bodies(std::string_view function) {
-  if (function == "min") return "a union is written a + b";
-  if (function == "max") return "an intersection is written a & b, a cut a - b";
-  if (function == "mix") return "what lies between two bodies is morph(a, b, t = 0.5), a soft join a +{0.2} b";
-  if (function == "mod") return "copies on a grid are body.repetition(period = [2, 0, 0])";
-  if (function == "abs") return "a shell is body.onion(0.05), a mirrored body body.mirror([1, 0, 0])";
-  return "";
-}
-
 // Calls a formula function. `length` also accepts a vector.
 Value Evaluator::call_formula(const Expr& expr, Values arguments) {
   const FormulaFunction& function = *expr.word->formula;
@@ -143,9 +133,8 @@ Value Evaluator::call_formula(const Expr& expr, Values arguments) {
   }
   for (const Value& argument : arguments) {
     if (!is_number(argument)) {
-      const std::string help = argument.is(Type::Node) ? of_bodies(expr.name) : "";
       fail("E0807", argument.span, fmt::format("`{}` takes numbers, not {}", expr.name, describe(argument)),
-           help.empty() ? std::vector<std::string>{} : std::vector{help});
+           {std::string(argument.is(Type::Node) ? foreign_help(expr.name) : "")});
     }
   }
   const Value& last = arguments.back();
