@@ -62,9 +62,9 @@ SurfacePlace place(const Code& program, glm::dvec3 p, Workspace& workspace) {
 }
 
 Range range(const Code& program, glm::dvec3 lo, glm::dvec3 hi, Workspace& workspace) {
-  const Vec3<Interval> box{{lo.x, hi.x}, {lo.y, hi.y}, {lo.z, hi.z}};
-  const Interval result = run_once<Interval>(program, box, workspace);
-  return {result.lo, result.hi};
+  const auto coordinate = [&](int axis) { return Along{{lo[axis], hi[axis]}, {0, 0}}; };
+  const Along result = run_once<Along>(program, Vec3<Along>{coordinate(0), coordinate(1), coordinate(2)}, workspace);
+  return {result.v.lo, result.v.hi};
 }
 
 AlongLine along(const Code& program, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
