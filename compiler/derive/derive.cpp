@@ -51,7 +51,7 @@ class Deriver {
       diagnostics_.error("E0302", type_span, *problem, "", {fmt::format("`{}`: {}", row.name, row.doc)});
       return children[0];
     }
-    const NodeId made = make_field(maker_, kind, params, children, described_.origin(id));
+    const NodeId made = make_field(maker_, kind, params, children, described_.origin(id), allowance_);
     if (type_span.end > 0) check_size(maker_.graph(), made, type_span, limits_, diagnostics_);
     check_count(described_.origin(id).span);
     return made;
@@ -67,6 +67,7 @@ class Deriver {
 
   const Graph& described_;
   NodeMaker maker_;
+  SearchAllowance allowance_;
   const std::span<const Span> type_spans_;
   const Limits& limits_;
   Diagnostics& diagnostics_;

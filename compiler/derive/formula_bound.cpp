@@ -51,16 +51,20 @@ class Bisection {
     add(box, std::make_shared<const vm::PrunedProgram>(vm::whole(program)));
   }
 
-  FormulaBound run() {
+  FormulaBound run(SearchAllowance& allowance) {
     // The number of cells depends on the formula's length: at most a tenth of a second even if no cell's part is
     // shorter. A formula so long that few cells remain gets a second by the cost of its functions.
     const int cells = 4'000'000 / (length_ + 1);
-    const int budget =
-        cells >= kFew ? std::min(cells, 8192) : std::clamp(static_cast<int>(8'000'000 / (cost_ + 1)), 4, kFew);
-    for (int i = 0; i < budget && !cells_.empty(); ++i) {
+    const bool is_long = cells < kFew;
+    const int full = is_long ? std::clamp(static_cast<int>(8'000'000 / (cost_ + 1)), 4, kFew) : std::min(cells, 8192);
+    const double price = is_long ? 10 : 1;
+    const int budget = static_cast<int>(std::ceil(full * std::min(1.0, allowance.left / (kShare * price))));
+    int done = 0;
+    for (; done < budget && !cells_.empty(); ++done) {
       const Cell steepest = cells_.top();
       if (steepest.bound.lipschitz <= kCloseEnough * seen_ || !split(steepest)) break;
     }
+    allowance.left = std::max(0.0, allowance.left - price * done / full);
     FormulaBound result{kInfinity, -kInfinity, 0, seen_, 0, 0};
     double smallest = kInfinity;
     for (; !cells_.empty(); cells_.pop()) {
@@ -139,6 +143,7 @@ class Bisection {
   }
 
   static constexpr int kFew = 64;
+  static constexpr double kShare = 16;  // a search takes at most this part of what is left
 
   const int length_;
   const std::uint32_t cost_;
@@ -201,10 +206,10 @@ std::array<bool, 3> coordinates_of(const Graph& graph, NodeId formula) {
 
 }  // namespace
 
-FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box) {
+FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box, SearchAllowance& allowance) {
   const std::optional<vm::VerifiedProgram> program = program_of(graph, formula);
   if (!program) return {-kInfinity, kInfinity, kInfinity, 0, kInfinity, 1};
-  return Bisection(*program, box, coordinates_of(graph, formula)).run();
+  return Bisection(*program, box, coordinates_of(graph, formula)).run(allowance);
 }
 
 double slope_at_surface(const Graph& graph, NodeId formula, const Box& box) {
@@ -213,7 +218,8 @@ double slope_at_surface(const Graph& graph, NodeId formula, const Box& box) {
 }
 
 NodeId find_unbounded(const Graph& graph, NodeId formula, const Box& box) {
-  const Box cell = bound_formula(graph, formula, box).unbounded;
+  SearchAllowance allowance;
+  const Box cell = bound_formula(graph, formula, box, allowance).unbounded;
   if (cell.empty()) return formula;
   vm::Workspace workspace;
   double left = 4e6;  // budget of instructions to evaluate: seconds

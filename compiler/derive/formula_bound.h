@@ -19,8 +19,14 @@ struct FormulaBound {
   Box unbounded = {};          // the smallest cell without a bound that the search met; empty if there is none
 };
 
+// Cost that all searches of a scene may still have together, in searches at full length: a tenth of a second each,
+// and a second for a very long formula. In a scene with many formulas the searches end earlier and earlier.
+struct SearchAllowance {
+  double left = 64;
+};
+
 // `box` may have infinite sides. `formula` is a node of numbers.
-FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box);
+FormulaBound bound_formula(const Graph& graph, NodeId formula, const Box& box, SearchAllowance& allowance);
 
 // Returns the length of the gradient near where the formula is 0: the third quartile at the nearest, by their values
 // and slopes, of some points that are spread evenly over the box. 0 in an infinite box.

@@ -57,12 +57,13 @@ struct DisplacedBound {
 // Returns a box that contains the displaced solid: the child's box grown by g, where g covers the amount by which the
 // formula lowers the distance within the box. The loop extrapolates the needed growth along its slope to where it
 // equals the given growth. If the formula always needs more, the solid can be anywhere.
-DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const NodeFacts& child) {
+DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const NodeFacts& child,
+                               SearchAllowance& allowance) {
   constexpr int kTries = 8;
   double grown = 0, last_grown = 0, last_needed = 0;
   for (int i = 0; i < kTries && child.reach_max > 0 && std::isfinite(grown); ++i) {
     const Box box = child.box.grown(grown);
-    const FormulaBound bound = bound_formula(graph, formula, box);
+    const FormulaBound bound = bound_formula(graph, formula, box, allowance);
     const double needed = std::max(0.0, -bound.least) / child.reach_max;
     if (needed <= grown) return {box, bound};
     const double slope = i == 0 ? 0 : (needed - last_needed) / (grown - last_grown);
@@ -71,12 +72,13 @@ DisplacedBound bound_displaced(const Graph& graph, NodeId formula, const NodeFac
     constexpr double kAbove = 1.0001;  // the bounds are rounded outwards
     grown *= kAbove;
   }
-  return {Box::everything(), bound_formula(graph, formula, Box::everything())};
+  return {Box::everything(), bound_formula(graph, formula, Box::everything(), allowance)};
 }
 
-NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const SourceLocation& origin) {
+NodeId displacement(NodeMaker& maker, std::span<const NodeId> children, const SourceLocation& origin,
+                    SearchAllowance& allowance) {
   const NodeFacts child = maker.known(children[0]);
-  const DisplacedBound found = bound_displaced(maker.graph(), children[1], child);
+  const DisplacedBound found = bound_displaced(maker.graph(), children[1], child, allowance);
   const FormulaBound& bound = found.formula;
   const bool proved = std::isfinite(bound.lipschitz);
   // The slope near the displaced surface is not that of the formula.
@@ -93,8 +95,9 @@ FormulaProof proof_of(const Graph& graph, NodeId bounded) {
   return static_cast<FormulaProof>(static_cast<int>(graph.params(bounded)[kProof]));
 }
 
-NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin) {
-  const FormulaBound bound = bound_formula(maker.graph(), formula, box);
+NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin,
+                    SearchAllowance& allowance) {
+  const FormulaBound bound = bound_formula(maker.graph(), formula, box, allowance);
   const double at_surface = slope_at_surface(maker.graph(), formula, box);
   const bool proved = std::isfinite(bound.lipschitz);
   return bounded(maker, formula, box, proved ? bound.lipschitz : estimated(bound, at_surface),
@@ -102,12 +105,12 @@ NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const Sour
 }
 
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
-                  const SourceLocation& origin) {
+                  const SourceLocation& origin, SearchAllowance& allowance) {
   switch (kind) {
     case Kind::Expression:
-      return make_bounded(maker, children[0], Box::centred({params[0], params[1], params[2]}), origin);
+      return make_bounded(maker, children[0], Box::centred({params[0], params[1], params[2]}), origin, allowance);
     case Kind::Displacement:
-      return displacement(maker, children, origin);
+      return displacement(maker, children, origin, allowance);
     default:
       return maker.make(kind, params, children, origin);
   }

@@ -4,15 +4,16 @@
 // Tested by: tests/compiler/derive/formula_field_test.cpp
 #pragma once
 
+#include "compiler/derive/formula_bound.h"
 #include "compiler/shapes/make_node.h"
 
 namespace fathom::compiler {
 
 // Like NodeMaker::make(), for every kind of node that scenes have. Expression and Displacement become Bounded nodes
 // with proved numbers. The child of an Expression is the formula. The children of a Displacement are the displaced
-// node and the formula.
+// node and the formula. `allowance` is the scene's.
 NodeId make_field(NodeMaker& maker, Kind kind, Params params, std::span<const NodeId> children,
-                  const SourceLocation& origin);
+                  const SourceLocation& origin, SearchAllowance& allowance);
 
 // Proof of a Bounded node's Lipschitz constant.
 enum class FormulaProof {
@@ -27,6 +28,7 @@ constexpr bool holds_everywhere(FormulaProof proof) {
 FormulaProof proof_of(const Graph& graph, NodeId bounded);
 
 // Makes a formula the field of a box with any corners.
-NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin);
+NodeId make_bounded(NodeMaker& maker, NodeId formula, const Box& box, const SourceLocation& origin,
+                    SearchAllowance& allowance);
 
 }  // namespace fathom::compiler

@@ -82,7 +82,8 @@ TEST_CASE("a formula whose constant is halved is named, and an estimate never br
     const double three[] = {3};
     const NodeId product[] = {graph.add(Kind::X, {}, {}), graph.add(Kind::Constant, three, {})};
     const NodeId sum[] = {graph.add(Kind::Multiply, {}, product)};
-    const NodeId sound = make_bounded(maker, sum[0], Box::centred(glm::dvec3(2)), {});
+    SearchAllowance allowance;
+    const NodeId sound = make_bounded(maker, sum[0], Box::centred(glm::dvec3(2)), {}, allowance);
     std::vector<double> params(graph.params(sound).begin(), graph.params(sound).end());
     CHECK(params[6] == Approx(3));
     params[6] /= 2;

@@ -32,7 +32,8 @@ NodeId over(NodeMaker& maker, Kind kind, const std::vector<double>& params, Node
 NodeId gentle(NodeMaker& maker, dvec3 lo, dvec3 hi) {
   const NodeId x = maker.make(Kind::X, {}, {});
   const NodeId operands[] = {x, maker.make(Kind::Constant, {{0.005}}, {})};
-  return compiler::make_bounded(maker, maker.make(Kind::Multiply, {}, operands), {lo, hi}, {});
+  compiler::SearchAllowance allowance;
+  return compiler::make_bounded(maker, maker.make(Kind::Multiply, {}, operands), {lo, hi}, {}, allowance);
 }
 
 // Checks that no value changes faster than the node's Lipschitz constant allows, in double, by the judge and by the

@@ -43,7 +43,7 @@ class Maker {
       // One declarator after the other, because compilers evaluate arguments in different orders.
       const double z = random_.length(0.3, 2), y = random_.length(0.3, 2), x = random_.length(0.3, 2);
       const dvec3 half(x, y, z);
-      return compiler::make_bounded(maker_, random_formula(maker_, random_), {-half, half}, {});
+      return compiler::make_bounded(maker_, random_formula(maker_, random_), {-half, half}, {}, allowance_);
     }
     if (options_.outlines && random_.chance(0.2)) return of_outline();
     const std::vector<Kind> kinds = primitive_kinds(compiler::Sort::Solid, options_.mandelbulbs);
@@ -96,7 +96,7 @@ class Maker {
   // Displaces the child's surface by a formula. Returns the child itself if the compiler cannot prove a slope bound.
   NodeId displaced(NodeId child) {
     const std::vector<NodeId> operands = {child, random_formula(maker_, random_)};
-    const NodeId id = compiler::make_field(maker_, Kind::Displacement, {}, operands, {});
+    const NodeId id = compiler::make_field(maker_, Kind::Displacement, {}, operands, {}, allowance_);
     return maker_.known(id).certified ? id : child;
   }
 
@@ -132,6 +132,7 @@ class Maker {
 
   Graph& graph_;
   compiler::NodeMaker maker_;
+  compiler::SearchAllowance allowance_;
   Random& random_;
   const GraphOptions& options_;
   std::vector<NodeId> made_;
