@@ -36,8 +36,7 @@ bool is_parameter(std::string_view name, const Scope& scope) {
 bool is_color_text(const syntax::Value& value, ValueType type, const Scope& scope) {
   const auto* text = std::get_if<std::string>(&value.data);
   if (text == nullptr || (type != ValueType::Color && type != ValueType::Background)) return false;
-  const bool is_formula = type == ValueType::Color && is_parameter(*text, scope);
-  return text->starts_with('#') || (find_css(*text) && !is_formula);
+  return text->starts_with('#') || (find_css(*text) && !is_parameter(*text, scope));
 }
 
 std::optional<syntax::Value> read_color_text(const syntax::Value& value, Diagnostics& diagnostics) {

@@ -55,8 +55,8 @@ std::string expected(ValueType type, const Diagnostics& diagnostics) {
                                  "three angles [x, y, z] or axis = [x, y, z], angle = degrees");
     case ValueType::Background:
       return diagnostics.spelled(
-          "a colour [red, green, blue] or {\"bottom\": colour, \"top\": colour}, a sky or an image",
-          "a colour [red, green, blue], (bottom = colour, top = colour), a sky or an image");
+          "a colour [red, green, blue], a number or {\"bottom\": colour, \"top\": colour}, a sky or an image",
+          "a colour [red, green, blue], a number, (bottom = colour, top = colour), a sky or an image");
     case ValueType::Anything:
       break;
   }
@@ -114,8 +114,9 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Scale:
       return number != nullptr || three;
     case ValueType::Rotation:
-    case ValueType::Background:
       return record || three;
+    case ValueType::Background:
+      return record || three || number != nullptr;
     case ValueType::Anything:
       break;
   }

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "compiler/frontend/records/css_colors.h"
 #include "compiler/frontend/records/records.h"
 #include "compiler/shapes/node_table.h"
 
@@ -57,14 +56,6 @@ OrderedJson record_schema(const RecordSpec& record, bool type_required);
 // True if the property distinguishes the records of a family.
 bool tells_apart(const PropertySpec& property) { return property.name == "type" || property.name == "pattern"; }
 
-// Returns the schema of a colour as a code or a name.
-OrderedJson color_text_schema() {
-  OrderedJson names = OrderedJson::array();
-  for (const NamedColor& color : kCssColors) names.push_back(color.name);
-  const OrderedJson code = {{"type", "string"}, {"pattern", "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$"}};
-  return either(code, {{"enum", std::move(names)}});
-}
-
 // Returns the schema of a grey or a colour. A colour string matches the string schema for formulas.
 OrderedJson color_schema(const PropertySpec& property) { return either(number_schema(property), three_schema(property)); }
 
@@ -106,9 +97,8 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
     case ValueType::Scale:
     case ValueType::Rotation:
       return reference(property.name);
-    case ValueType::Background:  // one colour for both ends, as numbers or a string
-      return {{"anyOf",
-               {three_schema(*background_records()[0].find("top")), color_text_schema(), reference(property.name)}}};
+    case ValueType::Background:  // one colour for both ends
+      return either(color_schema(*background_records()[0].find("top")), reference(property.name));
     case ValueType::Version:
       return {{"const", kSceneVersion}};
     case ValueType::Anything:

@@ -16,7 +16,7 @@ using syntax::Value;
 
 bool may_be_number(ValueType type) {
   return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Scale ||
-         type == ValueType::Color;
+         type == ValueType::Color || type == ValueType::Background;
 }
 
 bool may_be_numbers(ValueType type) {

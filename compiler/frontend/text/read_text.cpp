@@ -39,6 +39,21 @@ std::optional<ReadText> read(Source& source, const ImportedFiles& files, const D
   return ReadText{std::move(file), std::move(evaluated)};
 }
 
+// Returns how many of the comments speak of the whole file: those before its first statement, up to the last that the
+// head `fathom 1` or a blank line follows.
+std::size_t comments_of_file(std::string_view text, const text::Tokens& tokens) {
+  constexpr std::size_t kHead = 2;  // tokens
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < tokens.comments.size() && tokens.comments[i].before <= kHead; ++i) {
+    const text::Comment& comment = tokens.comments[i];
+    const bool last = i + 1 == tokens.comments.size() || tokens.comments[i + 1].before > comment.before;
+    const std::uint32_t next = last ? tokens.tokens[comment.before].span.begin : tokens.comments[i + 1].span.begin;
+    const std::string_view between = text.substr(comment.span.end, next - comment.span.end);
+    if (comment.before < kHead || std::ranges::count(between, '\n') > 1) count = i + 1;
+  }
+  return count;
+}
+
 }  // namespace
 
 bool is_text_scene(std::string_view text) { return text::first_word(text) == "fathom"; }
@@ -74,12 +89,20 @@ JsonComments comments_of_text(const Source& source, const syntax::File& file) {
   places.erase(0);
   JsonComments comments;
   Diagnostics none;
-  for (const text::Comment& comment : text::read_tokens(source, none).comments) {
+  const text::Tokens tokens = text::read_tokens(source, none);
+  const std::size_t of_file = comments_of_file(source.text(), tokens);
+  for (std::size_t i = 0; i < tokens.comments.size(); ++i) {
+    const text::Comment& comment = tokens.comments[i];
+    const std::string text = source.text().substr(comment.span.begin, comment.span.end - comment.span.begin);
+    if (i < of_file) {
+      comments.emplace(0, text);  // before the first property, which no part of the text gives
+      continue;
+    }
     const auto next = places.lower_bound(comment.span.begin);
     if (places.empty()) break;
     const bool beside = !comment.first_on_line && next != places.begin();
     const auto at = beside || next == places.end() ? std::prev(next) : next;
-    comments.emplace(*at, source.text().substr(comment.span.begin, comment.span.end - comment.span.begin));
+    comments.emplace(*at, text);
   }
   return comments;
 }

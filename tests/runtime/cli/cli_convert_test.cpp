@@ -58,6 +58,17 @@ TEST_CASE("cli: convert goes from JSON to text and back", "[cli]") {
   CHECK(folder.run("convert bad.fathom").code == 65);
 }
 
+// The first comment of a text, which speaks of the scene, was put among its parameters.
+TEST_CASE("cli: convert keeps comments on the whole file before everything", "[cli]") {
+  const Folder folder;
+  folder.write(
+      "a.fathom",
+      "// By Ada.\nfathom 1\n// A ball on\n// its own.\n\n// Of the ball.\nparam r = 0.5\nobject sphere(r)\n");
+  CHECK(folder.run("convert a.fathom").out ==
+        "{\n  // By Ada.\n  // A ball on\n  // its own.\n  \"version\": 1,\n  \"params\": {\n    // Of the ball.\n"
+        "    \"r\": 0.5\n  },\n  \"objects\": [{\"type\": \"sphere\", \"radius\": \"r\"}]\n}\n");
+}
+
 TEST_CASE("cli: fmt prints, writes and checks the layout", "[cli]") {
   const Folder folder;
   folder.write("a.fathom", "fathom 1\nobject sphere( 1 )\n");

@@ -90,6 +90,10 @@ const Value* Evaluator::given_value(const Statement& parameter) {
 Value Evaluator::run_parameter(const Statement& statement) {
   const auto known_value = [&](const Value& value) {
     if (value.is(Type::Text)) return make_value(value.span, *value.text);
+    if (value.is(Type::Record)) {
+      fail("E0807", value.span, "a parameter must be a number, not a record",
+           {fmt::format("limits stand before the value: param {}(min = 0, max = 2) = 1", statement.name)});
+    }
     const std::size_t frozen = out_.frozen.size();
     const double known = constant(value, "a parameter");
     out_.frozen.resize(frozen);  // the parameter itself keeps its formula

@@ -44,8 +44,14 @@ TEST_CASE("a colour can be named as in CSS", "[frontend][elaborate]") {
   const compiler::CompiledScene scene = test::compiled(
       R"({"version": 1, "params": {"red": 0.25}, "background": "red", "materials": {"m": {"type": "diffuse",
       "color": "red"}}, "objects": [{"type": "sphere", "radius": 1, "material": "m"}]})");
-  CHECK(scene.background.top == glm::dvec3(1, 0, 0));  // no formula
+  CHECK(scene.background.top == glm::dvec3(0.25));
   CHECK(scene.materials.at(0).color == glm::dvec3(0.25));
+}
+
+TEST_CASE("a number is a grey background, as it is a grey colour", "[frontend][elaborate]") {
+  const auto scene = test::compiled("fathom 1\nparam p = 0.5\nbackground p*3\nobject sphere(1)\n");
+  CHECK(scene.background.top == glm::dvec3(1.5));
+  CHECK(scene.background.bottom == glm::dvec3(1.5));
 }
 
 TEST_CASE("an outline is moved by two numbers as by three of which the last is 0", "[frontend][elaborate]") {

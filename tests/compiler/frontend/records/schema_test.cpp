@@ -120,7 +120,8 @@ TEST_CASE("schema: the compiler's golden mistakes are found, or known to be beyo
     if (is_text_scene(text)) continue;
     CAPTURE(name);
     CHECK((kStructural.count(code) > 0) != beyond(code));
-    const bool computed = name.ends_with("_formula.txt");  // the schema does not know the formula's value
+    // The schema knows neither a formula's value nor the texts of colours.
+    const bool computed = name.ends_with("_formula.txt") || name.ends_with("_color_text.txt");
     if (computed || name.starts_with("E06")) continue;
     if (kStructural.count(code) > 0) {
       CHECK(schema_problem(parse(text), schema()) != "");
