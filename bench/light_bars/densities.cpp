@@ -129,7 +129,7 @@ Group environments(int samples) {
   Group group{"what lies beyond the scene, for 3 surfaces", {}};
   for (const Beyond& c : cases) {
     const auto environment =
-        std::make_shared<runtime::Environment>(compile_scene(c.json + ball), test::random_image(12, 6));
+        std::make_shared<runtime::Environment>(compile_scene(c.json + ball), test::random_map(12, 6));
     for (const runtime::LightSampleContext& query : queries) {
       if (!(environment->importance(query) > 0)) continue;  // the disc is behind the surface
       test::ChiSquareSetup setup = setup_of(samples, c.pole, 3000 + group.pairs.size());

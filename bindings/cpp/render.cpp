@@ -62,8 +62,7 @@ Error read_background(Picture& picture, double memory) {
   if (const auto* fault = std::get_if<runtime::ImageReadError>(&image)) {
     return {fault->missing ? Error::Kind::File : Error::Kind::BadScene, "the scene's background: " + fault->problem};
   }
-  picture.options.environment =
-      std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
+  picture.options.environment = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
   return {};
 }
 

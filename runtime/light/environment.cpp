@@ -21,31 +21,6 @@ constexpr double kRounding = 0x1p-24;
 // Minimum angle of a disc, degrees. Directions in float would make the disc larger by kRounding all round: at this
 // angle by 0.03 % of its area.
 constexpr double kMinDisc = 0.02;
-// Share of the background's light by which it exceeds its mean, below which it counts as even.
-constexpr double kMinUneven = 1e-3;
-
-// Returns the mean luminance over each pixel of the image after bilinear filtering: weights 1, 6, 1 of 8 along each
-// axis.
-std::vector<float> filtered_luminance(const EnvironmentImage& image) {
-  const int width = image.width, height = image.height;
-  std::vector<float> across(image.pixels.size()), out(image.pixels.size());
-  const auto at = [&](int x, int y) {
-    return static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
-           static_cast<std::size_t>((x + width) % width);
-  };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto l = [&](int i) { return luminance(image.pixels[at(i, y)]); };
-      across[at(x, y)] = 0.125f * l(x - 1) + 0.75f * l(x) + 0.125f * l(x + 1);
-    }
-  }
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      out[at(x, y)] = 0.125f * across[at(x, y - 1)] + 0.75f * across[at(x, y)] + 0.125f * across[at(x, y + 1)];
-    }
-  }
-  return out;
-}
 
 // Returns mean luminances of cells, from the middles of the quarters of each cell.
 template <class Radiance>
@@ -69,38 +44,27 @@ double gradient_share(float height) { return std::clamp((static_cast<double>(hei
 
 }  // namespace
 
-Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
+Environment::Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentMap> map)
     : type_(scene.background.type), bottom_(scene.background.bottom), top_(scene.background.top) {
   const compiler::Background& background = scene.background;
   if (type_ == Type::Image) {
-    CHECK(image != nullptr && !image->pixels.empty(),
-          "the scene's background is a picture, which must be read first");
+    CHECK(map != nullptr, "the scene's background is a picture, which must be read first");
     strength_ = static_cast<float>(background.image.strength);
-    set_table(image->width, image->height, filtered_luminance(*image),
-              {image->pixels, strength_, background.image.rotate / 360});
+    const double turn = background.image.rotate / 360;
+    turn_ = static_cast<float>(std::ceil(turn) - turn);
+    light_ = std::shared_ptr<const UnevenLight>(map, &map->light);
   }
   if (type_ == Type::Sky) {
     constexpr int kRows = 64;
     sky_.emplace(background.sky);
-    set_table(2 * kRows, kRows, cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }), {});
+    light_ = std::make_shared<UnevenLight>(
+        2 * kRows, kRows, cell_luminance(2 * kRows, kRows, [&](glm::vec3 w) { return sky_->radiance(w); }));
     if (background.sky.sun_disc) add_disc(background.sky.sun, kSunAngle, sky_->sun_irradiance());
   }
   for (const compiler::Light& light : scene.lights) {
     if (light.type != compiler::Light::Type::Directional || light.angle == 0) continue;
     add_disc(-light.direction, light.angle, glm::vec3(light.intensity));
   }
-}
-
-void Environment::set_table(int width, int height, std::vector<float> luminances,
-                            const PiecewiseConstantSphere::Image& image) {
-  const double mean_of_all = mean_over_sphere(width, height, luminances);
-  for (float& value : luminances) value = std::max(value - static_cast<float>(mean_of_all), 0.0f);
-  // The little that rounding leaves of an even background is not sampled, either.
-  if (mean_over_sphere(width, height, luminances) < kMinUneven * mean_of_all) {
-    std::fill(luminances.begin(), luminances.end(), 0.0f);
-  }
-  table_ = PiecewiseConstantSphere(width, height, luminances, image);
-  even_ = kPiFloat * strength_ * static_cast<float>(mean_of_all - table_.mean());
 }
 
 // A disc of radiance L gives an irradiance of L pi sin^2 of its angle to a surface that faces it.
@@ -141,18 +105,21 @@ void Environment::add_discs(std::size_t count, DirectionRows& rows) const {
 }
 
 void Environment::look_up(std::size_t count, DirectionRows& rows) const {
-  if (type_ != Type::Gradient) table_.look_up(count, rows);
+  if (light_) light_->sphere.look_up(count, turn_, rows);
   complete(count, rows);
 }
 
-// Sets the radiance that is not in the table.
+// Makes the radiance of the table that of the background with its discs.
 void Environment::complete(std::size_t count, DirectionRows& rows) const {
   if (type_ == Type::Gradient) set_gradient(count, rows);
   if (type_ == Type::Sky) set_sky(count, rows);
+  if (type_ == Type::Image && strength_ != 1) {
+    for (std::size_t i = 0; i < count; ++i) rows.set_radiance(i, strength_ * rows.radiance(i));
+  }
   if (!discs_.empty()) add_discs(count, rows);
 }
 
-float Environment::mean() const { return strength_ * static_cast<float>(table_.mean()); }
+float Environment::mean() const { return light_ ? strength_ * static_cast<float>(light_->sphere.mean()) : 0; }
 
 float Environment::importance(const Disc& disc, const LightSampleContext& context) const {
   const float cosine = glm::dot(context.normal, glm::vec3(disc.direction));
@@ -187,7 +154,7 @@ glm::vec3 Environment::Disc::sample(glm::vec2 u) const {
 }
 
 void Environment::sample(std::size_t count, EnvironmentSamples& samples) const {
-  if (mean() > 0) table_.sample(count, samples.u, samples.v, samples.rows);
+  if (mean() > 0) light_->sphere.sample(count, samples.u, samples.v, turn_, samples.rows);
   if (!discs_.empty()) aim_at_discs(count, samples);
   complete(count, samples.rows);
 }
@@ -202,7 +169,7 @@ void Environment::aim_at_discs(std::size_t count, EnvironmentSamples& samples) c
     aimed.set_direction(chosen, disc->sample({samples.u[i], samples.v[i]}));
     place[chosen++] = i;
   }
-  if (type_ != Type::Gradient) table_.look_up(chosen, aimed);
+  if (light_) light_->sphere.look_up(chosen, turn_, aimed);
   for (std::size_t k = 0; k < chosen; ++k) {
     samples.rows.set_direction(place[k], aimed.direction_of(k));
     std::copy_n(aimed.light[k], 4, samples.rows.light[place[k]]);

@@ -16,10 +16,9 @@
 #include <vector>
 
 #include "compiler/scene/compiled_scene.h"
-#include "runtime/light/environment_file.h"
+#include "runtime/light/environment_map.h"
 #include "runtime/light/light_sample_context.h"
 #include "runtime/light/sky.h"
-#include "runtime/sampling/piecewise_constant_sphere.h"
 
 namespace fathom::runtime {
 
@@ -33,8 +32,8 @@ struct EnvironmentSamples {
 
 class Environment {
  public:
-  // `image` is the image that the scene's background names, if it names one.
-  Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image);
+  // `map` is of the image that the scene's background names, if it names one.
+  Environment(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentMap> map);
 
   // Sets the radiance of the first `count` rows to that of rays that leave the scene in their directions, and their
   // density to that of samples of the background alone.
@@ -45,7 +44,7 @@ class Environment {
   // True if importance() is the same everywhere.
   bool is_uniform() const { return discs_.empty(); }
   // Returns the same estimate for the light of the background that is too even to be sampled.
-  float even_importance() const { return even_; }
+  float even_importance() const { return light_ ? strength_ * light_->even : 0; }
   // Samples directions by three numbers in [0,1) each, with their radiance. Requires importance() > 0.
   void sample(std::size_t count, EnvironmentSamples& samples) const;
   // Returns the density per solid angle with which sample() samples a direction, given its density as of look_up().
@@ -73,17 +72,14 @@ class Environment {
   void add_discs(std::size_t count, DirectionRows& rows) const;
   // Returns the disc that the number chooses, or null for the background.
   const Disc* choose_disc(const LightSampleContext& context, float choice) const;
-  // Makes the table of the background's luminances.
-  void set_table(int width, int height, std::vector<float> luminances, const PiecewiseConstantSphere::Image& image);
   float mean() const;  // luminance of the background's light that is sampled
   float importance(const Disc& disc, const LightSampleContext& context) const;
 
   Type type_;
   glm::dvec3 bottom_, top_;        // gradient
   std::optional<Sky> sky_;         // sky
-  float strength_ = 1;             // of the image
-  float even_ = 0;                 // irradiance by the even part of the sky or image, as luminance
-  PiecewiseConstantSphere table_;  // of a sky, or an image and its radiance
+  float strength_ = 1, turn_ = 0;  // of the image; the turn as in PiecewiseConstantSphere
+  std::shared_ptr<const UnevenLight> light_;  // of a sky or an image; null for a gradient
   std::vector<Disc> discs_;
 };
 

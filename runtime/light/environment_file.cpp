@@ -8,11 +8,15 @@
 
 #include "runtime/image/image.h"
 #include "runtime/image/image_read.h"
+#include "runtime/sampling/sphere_tables.h"
 
 namespace fathom::runtime {
 namespace {
 
-// Infinity, as half floats hold at the sun, becomes the largest half. A limit keeps sums of pixels from overflowing.
+// Bytes a pixel while an EnvironmentMap is made: the pixels, the luminances twice, and the tables.
+constexpr std::size_t kBytesOfMap = sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(SphereCell) + 6;
+
+// Infinity, as halfs hold at the sun, becomes the largest half. A limit keeps sums of pixels from overflowing.
 float usable(float value) {
   constexpr float kLargestHalf = 65504, kLargest = 1e20f;
   if (!(value > 0)) return 0;
@@ -40,7 +44,7 @@ std::variant<EnvironmentImage, ImageReadError> read_environment(const std::strin
         fmt::format("`{}` has no channels R, G and B and no Y; its channels: {}", path, channel_names(image))};
   }
   const double pixels = static_cast<double>(image.area.pixels());
-  const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + sizeof(glm::vec3));
+  const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + kBytesOfMap);
   if (needed > limits.memory) {
     return ImageReadError{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
   }
@@ -53,7 +57,7 @@ std::variant<EnvironmentImage, ImageReadError> read_environment(const std::strin
     }
   }
   if (const auto problem = not_finite(*light)) {
-    result.warning = fmt::format("`{}` has {}: NaN is read as 0, and infinity as 65504", path, *problem);
+    result.warning = fmt::format("`{}` has {}: NaN and -infinity are read as 0, infinity as 65504", path, *problem);
   }
   return result;
 }

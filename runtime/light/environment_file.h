@@ -17,8 +17,8 @@ struct EnvironmentImage {
   std::string warning = {};       // names pixels of the file that are no light; empty when there are none
 };
 
-// Returns the image, or the reason why it cannot be read. NaN and negative values become 0, and infinity becomes the
-// largest number of 16 bits.
+// Returns the image, or the reason why it cannot be read. NaN and negative values become 0, infinity 65504, the
+// largest half, and other values at most 1e20.
 std::variant<EnvironmentImage, ImageReadError> read_environment(const std::string& path,
                                                                 const ReadLimits& limits = {});
 

@@ -43,8 +43,8 @@ LightBounds bounds_of(const AreaLightShape& shape, glm::vec3 radiance) {
 
 }  // namespace
 
-Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image)
-    : environment_(scene, std::move(image)), tree_({}) {
+Lights::Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentMap> map)
+    : environment_(scene, std::move(map)), tree_({}) {
   std::vector<LightBounds> bounds;
   add_area_lights(scene, bounds);
   for (const compiler::Light& light : scene.lights) add_delta(light, bounds);

@@ -56,7 +56,7 @@ struct LightQueries {
 class Lights {
  public:
   // `image` is the image that the scene's background names, if it names one.
-  explicit Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentImage> image = nullptr);
+  explicit Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentMap> map = nullptr);
 
   // True if there is nothing to sample.
   bool empty() const;

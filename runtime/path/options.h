@@ -13,7 +13,7 @@
 #include "runtime/base/pixel_rect.h"
 #include "runtime/film/film.h"
 #include "runtime/film/partial_render.h"
-#include "runtime/light/environment_file.h"
+#include "runtime/light/environment_map.h"
 #include "runtime/march/method.h"
 
 namespace fathom::runtime {
@@ -53,8 +53,8 @@ struct RenderOptions : compiler::SettingsOverrides, Execution {
   // Takes the same number of samples for all pixels, ignoring the noise threshold.
   bool uniform = false;
 
-  // Image that the scene's background names, if its type is Background::Type::Image.
-  std::shared_ptr<const EnvironmentImage> environment;
+  // Map of the image that the scene's background names, if its type is Background::Type::Image.
+  std::shared_ptr<const EnvironmentMap> environment;
 
   // Takes only these samples of the `spp` samples of each pixel. Films of the other ranges add up to the film of all
   // samples. Not allowed with a noise threshold.

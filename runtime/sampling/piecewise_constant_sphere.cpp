@@ -75,11 +75,6 @@ double pole_distance(double angle, bool from_above) {
 
 }  // namespace
 
-glm::dvec2 to_latlong(glm::dvec3 d) {
-  const double u = vm::real::atan2(-d.x, d.z) / kTurn;
-  return {u < 0 ? u + 1 : u, vm::real::acos(std::clamp(d.y, -1.0, 1.0)) / std::numbers::pi};
-}
-
 glm::dvec3 from_latlong(glm::dvec2 uv) {
   const double polar = uv.y * std::numbers::pi, turn = uv.x * kTurn;
   const double sine = vm::real::sin(polar);
@@ -99,13 +94,12 @@ double mean_over_sphere(int width, int height, std::span<const float> values) {
 }
 
 PiecewiseConstantSphere::PiecewiseConstantSphere(int width, int height, std::span<const float> values,
-                                                 const Image& image) {
+                                                 std::span<const glm::vec3> pixels) {
   const std::size_t cells = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  CHECK(width > 0 && height > 0 && values.size() == cells && (image.pixels.empty() || image.pixels.size() == cells),
+  CHECK(width > 0 && height > 0 && values.size() == cells && (pixels.empty() || pixels.size() == cells),
         "a table of directions has width x height cells");
   tables_.width = width;
   tables_.height = height;
-  tables_.turn = static_cast<float>(std::ceil(image.turn) - image.turn);
   for (int row = 0; row < height; ++row) {
     const bool above = row < rows_above(height);
     const double begin = pole_distance(std::numbers::pi * row / height, above);
@@ -115,7 +109,7 @@ PiecewiseConstantSphere::PiecewiseConstantSphere(int width, int height, std::spa
   }
   tables_.cells.resize((static_cast<std::size_t>(width) + 2) * (static_cast<std::size_t>(height) + 2));
   set_densities(values);
-  if (!image.pixels.empty()) set_pixels(image);
+  if (!pixels.empty()) set_pixels(pixels);
   set_border();
 }
 
@@ -156,12 +150,12 @@ void PiecewiseConstantSphere::set_densities(std::span<const float> values) {
   }
 }
 
-void PiecewiseConstantSphere::set_pixels(const Image& image) {
-  auto pixel = image.pixels.begin();
+void PiecewiseConstantSphere::set_pixels(std::span<const glm::vec3> pixels) {
+  auto pixel = pixels.begin();
   for (int row = 0; row < tables_.height; ++row) {
     for (int column = 0; column < tables_.width; ++column, ++pixel) {
       for (int channel = 0; channel < 3; ++channel) {
-        cell_at(row, column).light[channel] = image.scale * (*pixel)[channel];
+        cell_at(row, column).light[channel] = (*pixel)[channel];
       }
     }
   }
@@ -180,7 +174,8 @@ void PiecewiseConstantSphere::set_border() {
 }
 
 // Hardly anything of a large image is in the cache. All that the rays need is therefore asked for first.
-void PiecewiseConstantSphere::sample(std::size_t count, const float* u, const float* v, DirectionRows& rows) const {
+void PiecewiseConstantSphere::sample(std::size_t count, const float* u, const float* v, float turn,
+                                     DirectionRows& rows) const {
   const auto width = static_cast<float>(tables_.width);
   const auto columns = static_cast<std::size_t>(tables_.width);
   const auto above = static_cast<std::size_t>(rows_above(tables_.height));
@@ -197,21 +192,21 @@ void PiecewiseConstantSphere::sample(std::size_t count, const float* u, const fl
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t cell = row[i].cell;
     const FoundCell column = find(sums_at(tables_.columns, cell), guide[i], u[i]);
-    polar.turns[i] = (static_cast<float>(column.cell) + column.share) / width + tables_.turn;
+    polar.turns[i] = (static_cast<float>(column.cell) + column.share) / width + turn;
     polar.distance[i] = tables_.pole_distance[cell] + row[i].share * tables_.pole_step[cell];
     polar.pole[i] = cell < above ? 1.0f : -1.0f;
     own[i] = static_cast<std::int32_t>((cell + 1) * (columns + 2) + column.cell + 1);
   }
   set_directions(count, polar, rows);
   SphereCellRows places;
-  find_cells(tables_, count, rows, places);
+  find_cells(tables_, turn, count, rows, places);
   std::copy_n(own.begin(), count, places.own);
   interpolate(count, places, rows);
 }
 
-void PiecewiseConstantSphere::look_up(std::size_t count, DirectionRows& rows) const {
+void PiecewiseConstantSphere::look_up(std::size_t count, float turn, DirectionRows& rows) const {
   SphereCellRows places;
-  find_cells(tables_, count, rows, places);
+  find_cells(tables_, turn, count, rows, places);
   interpolate(count, places, rows);
 }
 

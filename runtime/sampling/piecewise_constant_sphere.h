@@ -21,9 +21,8 @@
 
 namespace fathom::runtime {
 
-// Map a direction to u and v in [0,1], and back. v runs from +y down to -y with the polar angle. u is the turn about
-// y, 1/2 at -z and growing towards +x.
-glm::dvec2 to_latlong(glm::dvec3 direction);
+// Returns the direction at u and v in [0,1]. v runs from +y down to -y with the polar angle. u is the turn about y,
+// 1/2 at -z and growing towards +x.
 glm::dvec3 from_latlong(glm::dvec2 uv);
 
 // Returns the mean over the sphere of values in `height` rows of `width` cells, from +y down.
@@ -31,31 +30,24 @@ double mean_over_sphere(int width, int height, std::span<const float> values);
 
 class PiecewiseConstantSphere {
  public:
-  // Pixels of the image, finite and not negative, times `scale`. All is turned by `turn` of a full turn about y,
-  // counter-clockwise as seen from above.
-  struct Image {
-    std::span<const glm::vec3> pixels = {};  // none: black
-    float scale = 1;
-    double turn = 0;
-  };
-
-  PiecewiseConstantSphere() = default;
-  // Takes densities in any unit, finite and not negative: `height` rows of `width` cells, from +y down.
-  PiecewiseConstantSphere(int width, int height, std::span<const float> values, const Image& image);
+  // Takes densities in any unit and the pixels of an image, all finite and not negative: `height` rows of `width`
+  // cells, from +y down. Without pixels the image is black.
+  PiecewiseConstantSphere(int width, int height, std::span<const float> values, std::span<const glm::vec3> pixels);
 
   // Returns the mean of the values over the sphere; 0 when there is nothing to sample.
   double mean() const { return mean_; }
   // Sets the first `count` rows to directions sampled by u and v in [0,1), with their densities and radiance.
-  // Requires mean() > 0.
-  void sample(std::size_t count, const float* u, const float* v, DirectionRows& rows) const;
+  // Requires mean() > 0. The sphere is turned by `turn` of a full turn, in [0,1), about y, clockwise as seen from
+  // above.
+  void sample(std::size_t count, const float* u, const float* v, float turn, DirectionRows& rows) const;
   // Sets the radiance and the density of the first `count` rows to those of their directions. The radiance is
   // interpolated bilinearly.
-  void look_up(std::size_t count, DirectionRows& rows) const;
+  void look_up(std::size_t count, float turn, DirectionRows& rows) const;
 
  private:
   // Sets the running sums, and the cells' densities.
   void set_densities(std::span<const float> values);
-  void set_pixels(const Image& image);
+  void set_pixels(std::span<const glm::vec3> pixels);
   void set_border();
   void interpolate(std::size_t count, const SphereCellRows& places, DirectionRows& rows) const;
   SphereCell& cell_at(int row, int column);  // from -1 to the height, or width

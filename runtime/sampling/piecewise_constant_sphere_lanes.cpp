@@ -33,12 +33,13 @@ void direct_lanes(std::size_t count, const PolarRows& polar, DirectionRows& rows
 
 // The polar angle is that of the point (distance from the axis, height), because the height alone has few digits near
 // the poles.
-void find_lanes(const SphereTables& tables, std::size_t count, const DirectionRows& rows, SphereCellRows& places) {
+void find_lanes(const SphereTables& tables, float turn, std::size_t count, const DirectionRows& rows,
+                SphereCellRows& places) {
   const float width = static_cast<float>(tables.width), height = static_cast<float>(tables.height);
   for (std::size_t i = 0; i < count; i += vm::HWY_NAMESPACE::kLanes) {
     const Floats x = Floats::load(rows.direction[0] + i), y = Floats::load(rows.direction[1] + i),
                  z = Floats::load(rows.direction[2] + i);
-    const Floats turns = vm::HWY_NAMESPACE::atan2(-x, z) * number(kInverseTurn) - number(tables.turn);
+    const Floats turns = vm::HWY_NAMESPACE::atan2(-x, z) * number(kInverseTurn) - number(turn);
     const Floats polar = vm::HWY_NAMESPACE::atan2(sqrt(x * x + z * z), y) * number(kInversePi);
     const Floats across = (turns - floor(turns)) * number(width) - number(0.5f);
     const Floats down = polar * number(height) - number(0.5f);
@@ -91,8 +92,9 @@ HWY_EXPORT(interpolate_lanes);
 void set_directions(std::size_t count, const PolarRows& polar, DirectionRows& rows) {
   HWY_DYNAMIC_DISPATCH(direct_lanes)(count, polar, rows);
 }
-void find_cells(const SphereTables& tables, std::size_t count, const DirectionRows& rows, SphereCellRows& places) {
-  HWY_DYNAMIC_DISPATCH(find_lanes)(tables, count, rows, places);
+void find_cells(const SphereTables& tables, float turn, std::size_t count, const DirectionRows& rows,
+                SphereCellRows& places) {
+  HWY_DYNAMIC_DISPATCH(find_lanes)(tables, turn, count, rows, places);
 }
 void interpolate_cells(const SphereTables& tables, std::size_t count, const SphereCellRows& places,
                        DirectionRows& rows) {

@@ -16,8 +16,10 @@ struct PolarRows {
 };
 void set_directions(std::size_t count, const PolarRows& polar, DirectionRows& rows);
 
-// Sets the places of directions. Any direction, even NaN, has a place.
-void find_cells(const SphereTables& tables, std::size_t count, const DirectionRows& rows, SphereCellRows& places);
+// Sets the places of directions on the sphere turned by `turn`, as PiecewiseConstantSphere::look_up(). Any direction,
+// even NaN, has a place.
+void find_cells(const SphereTables& tables, float turn, std::size_t count, const DirectionRows& rows,
+                SphereCellRows& places);
 
 // Sets the radiance at the places, interpolated bilinearly, and the density of their own cells.
 void interpolate_cells(const SphereTables& tables, std::size_t count, const SphereCellRows& places,

@@ -43,7 +43,6 @@ struct SphereCell {
 // The tables of a PiecewiseConstantSphere.
 struct SphereTables {
   int width = 0, height = 0;
-  float turn = 0;  // of a full turn, added to u
   RunningSums rows, columns;
   // Distances from the nearer pole, along the axis, at which rows begin, and their change within the row. Near the
   // poles these have more digits than heights. The first rows_above(height) rows count from +y, the others from -y.

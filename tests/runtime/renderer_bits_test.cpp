@@ -23,6 +23,8 @@ constexpr const char* kRenders[] = {"cornell.json -s 4",
                                     "blends.json -s 4",
                                     "primitives.json -s 4",
                                     "mandelbulb.json -s 2",
+                                    "gallery/still-life.json -s 2",
+                                    "chess.fathom -s 2",
                                     "cornell.json -s 16 --noise-threshold 0",
                                     "cornell.json -s 64 --noise-threshold 0.2 --sampler sobol --filter tent"};
 

@@ -4,24 +4,24 @@
 #include <memory>
 
 #include "runtime/light/environment.h"
-#include "runtime/light/environment_file.h"
+#include "runtime/light/environment_map.h"
 #include "runtime/sampling/sampler.h"
 
 namespace fathom::test {
 
-inline std::shared_ptr<runtime::EnvironmentImage> random_image(int width, int height) {
-  auto image = std::make_shared<runtime::EnvironmentImage>(runtime::EnvironmentImage{width, height, {}});
+inline std::shared_ptr<runtime::EnvironmentMap> random_map(int width, int height) {
+  runtime::EnvironmentImage image{width, height, {}};
   for (int i = 0; i < width * height; ++i) {
     runtime::Sampler s(9, static_cast<std::uint32_t>(i), 0, 0);
     const float bright = i % 17 == 3 ? 5.0f : 0.5f;
-    image->pixels.emplace_back(bright * s.next(), bright * s.next(), bright * s.next());
+    image.pixels.emplace_back(bright * s.next(), bright * s.next(), bright * s.next());
   }
-  return image;
+  return std::make_shared<runtime::EnvironmentMap>(image);
 }
 
 inline constexpr const char* kSky = R"("background": {"type": "sky", "elevation": 35, "azimuth": 50, "turbidity": 4,
     "sun_disc": false})";
-// Environment map whose file is never read: tests use random_image() instead.
+// Environment map whose file is never read: tests use random_map() instead.
 inline constexpr const char* kPicture = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                         R"(/tests/data/one-pixel.hdr", "rotate": 40, "strength": 2})";
 
@@ -35,12 +35,17 @@ inline Seen seen(const runtime::DirectionRows& rows, std::size_t i) {
   return {rows.direction_of(i), rows.radiance(i), rows.density(i)};
 }
 
-// Looks in one direction. The density is per solid angle: of a table's samples, or of an environment's.
-template <class Background>
-Seen look(const Background& background, glm::vec3 direction) {
+// Look in one direction. The density is per solid angle: of a table's samples, or of an environment's.
+inline Seen look(const runtime::Environment& environment, glm::vec3 direction) {
   runtime::DirectionRows rows;
   rows.set_direction(0, direction);
-  background.look_up(1, rows);
+  environment.look_up(1, rows);
+  return seen(rows, 0);
+}
+inline Seen look(const runtime::PiecewiseConstantSphere& table, glm::vec3 direction, float turn = 0) {
+  runtime::DirectionRows rows;
+  rows.set_direction(0, direction);
+  table.look_up(1, turn, rows);
   return seen(rows, 0);
 }
 inline float pdf_of(const runtime::Environment& environment, const runtime::LightSampleContext& context,
@@ -49,10 +54,10 @@ inline float pdf_of(const runtime::Environment& environment, const runtime::Ligh
 }
 
 // Samples one direction.
-inline Seen sample_of(const runtime::PiecewiseConstantSphere& table, glm::vec2 u) {
+inline Seen sample_of(const runtime::PiecewiseConstantSphere& table, glm::vec2 u, float turn = 0) {
   runtime::DirectionRows rows;
   alignas(64) float x[runtime::DirectionRows::kCapacity] = {u.x}, y[runtime::DirectionRows::kCapacity] = {u.y};
-  table.sample(1, x, y, rows);
+  table.sample(1, x, y, turn, rows);
   return seen(rows, 0);
 }
 inline Seen sample_of(const runtime::Environment& environment, const runtime::LightSampleContext& context,

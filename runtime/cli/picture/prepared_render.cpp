@@ -32,8 +32,7 @@ std::optional<ExitCode> read_background(const compiler::Background& background, 
       warn(streams, "the scene's background: " + read.warning);
     }
     cache.background_file = file;
-    cache.background =
-        std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
+    cache.background = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
   }
   options.environment = cache.background;
   return std::nullopt;

@@ -55,10 +55,8 @@ std::string place_of(const compiler::CompiledScene& scene) {
 
 std::string environment_of(const runtime::RenderOptions& options) {
   if (!options.environment) return "none";
-  static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-  const auto pixels = std::as_bytes(std::span(options.environment->pixels));
-  const vm::Digest digest = vm::digest({reinterpret_cast<const std::uint8_t*>(pixels.data()), pixels.size()});
-  return fmt::format("{}x{} {}", options.environment->width, options.environment->height, digest.text());
+  const runtime::EnvironmentMap& map = *options.environment;
+  return fmt::format("{}x{} {}", map.width, map.height, map.digest.text());
 }
 
 std::string marching_of(const runtime::Marching& marching) {

@@ -26,8 +26,7 @@ std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running
       warn(streams_, read.warning);
     }
     cache_.background_file = plan_.background_name;
-    cache_.background =
-        std::make_shared<runtime::EnvironmentImage>(std::get<runtime::EnvironmentImage>(std::move(image)));
+    cache_.background = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
   }
   if (!plan_.grid.frames) return std::nullopt;
   const auto sequence = sequence_of(request_.frames, input_, request_.scene, streams_);

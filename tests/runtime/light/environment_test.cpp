@@ -16,7 +16,7 @@
 namespace fathom::runtime::environment_test {
 namespace {
 
-using test::kPicture, test::kSky, test::look, test::pdf_of, test::random_image, test::sample_of;
+using test::kPicture, test::kSky, test::look, test::pdf_of, test::random_map, test::sample_of;
 
 const LightSampleContext kUp{{0, 0, 0}, {0, 1, 0}};
 const LightSampleContext kAside{{0, 0, 0}, {0.6f, -0.48f, 0.64f}};
@@ -92,7 +92,7 @@ Mean irradiance(const Environment& environment, const LightSampleContext& query,
 
 TEST_CASE("environment: directions fall as their density says", "[light]") {
   const Environment sky(scene_with(kSky), nullptr);
-  const Environment picture(scene_with(kPicture), random_image(12, 6));
+  const Environment picture(scene_with(kPicture), random_map(12, 6));
   for (const LightSampleContext& query : {kUp, kAside, kBoth}) {
     check_density(sky, query);
     check_density(picture, query);
@@ -103,7 +103,8 @@ TEST_CASE("environment: irradiance of gradients and pictures", "[light]") {
   const Environment gradient(scene_with(R"("background": {"bottom": [1, 1, 1], "top": [4, 4, 4]})"), nullptr);
   CHECK(!gradient.emits());  // a gradient has no sampler: only hits find its light
   CHECK(gradient.importance(kUp) == 0);
-  auto white = std::make_shared<EnvironmentImage>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
+  const auto white =
+      std::make_shared<EnvironmentMap>(EnvironmentImage{16, 8, std::vector<glm::vec3>(128, glm::vec3(1))});
   const Environment picture(scene_with(kPicture), white);
   CHECK(!picture.emits());  // nor has an even picture
   const Mean of_white = irradiance(picture, kAside, 40000);
@@ -137,7 +138,7 @@ TEST_CASE("environment: the light of a single bright pixel, as filtering spreads
     }
     const Environment picture(scene_with(R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                          R"(/tests/data/one-pixel.hdr", "strength": 2})"),
-                              std::make_shared<EnvironmentImage>(image));
+                              std::make_shared<EnvironmentMap>(image));
     const Mean e = irradiance(picture, {{0, 0, 0}, glm::normalize(up)}, 40000);
     CAPTURE(e.value, truth, e.error);
     CHECK(std::abs(e.value - truth) < 4 * e.error + 1e-4 * truth);
@@ -150,7 +151,7 @@ TEST_CASE("environment: a picture's middle is at -z, its right towards +x, and i
           "[light]") {
   EnvironmentImage image{4, 2, std::vector<glm::vec3>(8, glm::vec3(0))};
   for (std::size_t i = 0; i < 8; ++i) image.pixels[i] = glm::vec3(static_cast<float>(i));
-  const auto shared = std::make_shared<EnvironmentImage>(image);
+  const auto shared = std::make_shared<EnvironmentMap>(image);
   const auto looking = [&](const char* rotate, glm::vec3 w) {
     const std::string settings = R"("background": {"type": "image", "file": ")" FATHOM_SOURCE_DIR
                                  R"(/tests/data/one-pixel.hdr", "rotate": )" +
@@ -257,7 +258,7 @@ TEST_CASE("environment: many rays and many samples are each as one alone", "[lig
   for (const std::string& settings : {gradient, gradient + "," + sun, std::string(kSky), kSky + ("," + sun),
                                       std::string(kPicture), kPicture + ("," + sun)}) {
     CAPTURE(settings);
-    const Environment environment(scene_with(settings), random_image(12, 6));
+    const Environment environment(scene_with(settings), random_map(12, 6));
     const std::size_t count = DirectionRows::kCapacity - 1;
     DirectionRows rows;
     for (std::size_t i = 0; i < count; ++i) {

@@ -3,6 +3,7 @@
 #include "runtime/sampling/piecewise_constant_sphere.h"
 
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +17,12 @@
 
 namespace fathom::runtime::sphere_table_test {
 namespace {
+
+// The inverse of from_latlong().
+glm::dvec2 to_latlong(glm::dvec3 d) {
+  const double u = std::atan2(-d.x, d.z) / (2 * M_PI);
+  return {u < 0 ? u + 1 : u, std::acos(glm::clamp(d.y, -1.0, 1.0)) / M_PI};
+}
 
 TEST_CASE("sphere table: longitude and latitude there and back", "[sampling][light]") {
   CHECK(glm::length(from_latlong({0.5, 0.5}) - glm::dvec3(0, 0, -1)) < 1e-15);
@@ -74,11 +81,12 @@ TEST_CASE("sphere table: samples lie in their cells, with the densities of these
   for (const glm::ivec2 size : {glm::ivec2(40, 20), glm::ivec2(64, 33), glm::ivec2(7, 300), glm::ivec2(1, 9)}) {
     CAPTURE(size.x, size.y);
     const std::vector<float> values = uneven_values(size.x * size.y);
-    const PiecewiseConstantSphere table(size.x, size.y, values, {.turn = 0.3});
+    const PiecewiseConstantSphere table(size.x, size.y, values, {});
+    constexpr float kTurn = 0.7f;
     std::vector<double> counts(values.size()), expected;
     constexpr int kSamples = 20000;
     for (std::uint32_t i = 0; i < kSamples; ++i) {
-      const test::Seen sample = sample_of(table, Sampler(2, i, 0, 0).next2());
+      const test::Seen sample = sample_of(table, Sampler(2, i, 0, 0).next2(), kTurn);
       const glm::dvec2 uv = to_latlong(glm::dvec3(sample.direction));
       const auto cell = [](double place, int cells) { return std::min(static_cast<int>(place * cells), cells - 1); };
       const double turned = uv.x + 0.3 - (uv.x + 0.3 < 1 ? 0 : 1);
@@ -90,7 +98,7 @@ TEST_CASE("sphere table: samples lie in their cells, with the densities of these
       if (x < edge || x > 1 - edge || y < edge || y > 1 - edge) continue;
       const double density = static_cast<double>(values[index]) / (4 * M_PI * table.mean());
       CHECK(static_cast<double>(sample.pdf) == Approx(density).epsilon(2e-3).margin(1e-5 / middle));
-      CHECK(look(table, sample.direction).pdf == sample.pdf);
+      CHECK(look(table, sample.direction, kTurn).pdf == sample.pdf);
       CHECK(values[index] > 0);
       ++counts[index];
     }
@@ -126,8 +134,8 @@ TEST_CASE("sphere table: samples at a pole are uniform per solid angle", "[sampl
 
 TEST_CASE("sphere table: an image is interpolated, across the ends of its rows and at the poles",
           "[sampling][light]") {
-  const std::vector<glm::vec3> pixels = {{1, 0, 0}, {2, 0, 0}, {4, 0, 1}, {8, 0, 1}, {16, 3, 0}, {32, 3, 0}};
-  const PiecewiseConstantSphere table(3, 2, std::vector<float>(6, 1.0f), {pixels, 2, 0});
+  const std::vector<glm::vec3> pixels = {{2, 0, 0}, {4, 0, 0}, {8, 0, 2}, {16, 0, 2}, {32, 6, 0}, {64, 6, 0}};
+  const PiecewiseConstantSphere table(3, 2, std::vector<float>(6, 1.0f), pixels);
   const auto red = [&](double u, double v) { return look(table, glm::vec3(from_latlong({u, v}))).radiance.x; };
   CHECK(red(1.0 / 6, 0.25) == Approx(2));
   CHECK(red(1.0 / 3, 0.25) == Approx(3));
@@ -140,12 +148,11 @@ TEST_CASE("sphere table: an image is interpolated, across the ends of its rows a
 }
 
 TEST_CASE("sphere table: every direction has a place", "[sampling][light]") {
-  const PiecewiseConstantSphere table(5, 3, std::vector<float>(15, 1.0f),
-                                      {std::vector<glm::vec3>(15, glm::vec3(1)), 1, 0.9});
+  const PiecewiseConstantSphere table(5, 3, std::vector<float>(15, 1.0f), std::vector<glm::vec3>(15, glm::vec3(1)));
   const float inf = INFINITY;
   for (const glm::vec3 w : {glm::vec3(0), glm::vec3(NAN), glm::vec3(inf, -inf, inf), glm::vec3(0, 1, 0),
                             glm::vec3(0, -1, 0), glm::vec3(-0.0f, 0, 1), glm::vec3(1e-30f, 1e30f, -1e30f)}) {
-    const test::Seen found = look(table, w);
+    const test::Seen found = look(table, w, 0.1f);
     CHECK(found.radiance.x == Approx(1));
     CHECK(found.pdf == Approx(1 / (4 * M_PI)));
   }
@@ -154,8 +161,8 @@ TEST_CASE("sphere table: every direction has a place", "[sampling][light]") {
 TEST_CASE("sphere table: the same bits on every processor", "[sampling][light][isa]") {
   const std::vector<float> values = uneven_values(40 * 20);
   std::vector<glm::vec3> pixels;
-  for (const float value : values) pixels.emplace_back(value, 1 - value, value * value);
-  const PiecewiseConstantSphere table(40, 20, values, {pixels, 3, 0.7});
+  for (const float value : values) pixels.push_back(3.0f * glm::vec3(value, 1 - value, value * value));
+  const PiecewiseConstantSphere table(40, 20, values, pixels);
   std::string bytes;
   const auto add = [&](const DirectionRows& rows, std::size_t count) {
     for (const float* row : {rows.direction[0], rows.direction[1], rows.direction[2], rows.light[0]}) {
@@ -171,12 +178,12 @@ TEST_CASE("sphere table: the same bits on every processor", "[sampling][light][i
       u[i] = sampler.next();
       v[i] = sampler.next();
     }
-    table.sample(count, u, v, rows);
+    table.sample(count, u, v, 0.3f, rows);
     add(rows, count);
     for (std::size_t i = 0; i < count; ++i) {
       rows.set_direction(i, glm::vec3(u[i] - 0.5f, v[i] - 0.5f, u[count - 1 - i] - 0.5f));
     }
-    table.look_up(count, rows);
+    table.look_up(count, 0.3f, rows);
     add(rows, count);
   }
   CHECK(vm::digest(bytes).text() == "97c8df416e1f0d960067bf26f4058b09");
