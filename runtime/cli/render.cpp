@@ -58,8 +58,8 @@ ExitCode render_once(const RenderRequest& request, RenderCache& cache, const Str
 }  // namespace
 
 int run_render(std::span<const std::string> args, const Streams& streams) {
-  // The Interruption exists from the start, so that a signal yields a checkpoint even while the scene is read and
-  // compiled.
+  // The Interruption exists from the start, so that a signal ends the command in time even while the scene is read
+  // and compiled.
   std::optional<Interruption> interruption;
   if (asks_for_checkpoint(args)) interruption.emplace().begin_preparation();
   auto parsed = parse_render(args, streams);

@@ -18,7 +18,10 @@ dvec3 with_z(dvec2 xy) { return {xy.x, xy.y, 1 - xy.x - xy.y}; }
 double largest(const dmat3& matrix) {
   double most = 0;
   for (int column = 0; column < 3; ++column) {
-    for (int row = 0; row < 3; ++row) most = std::max(most, std::abs(matrix[column][row]));
+    for (int row = 0; row < 3; ++row) {
+      const double size = std::abs(matrix[column][row]);
+      most = size <= most ? most : size;  // NaN is largest of all
+    }
   }
   return most;
 }

@@ -19,7 +19,7 @@ struct Chromaticities {
 // primary has its weight of 1, not which light is neutral.
 inline constexpr Chromaticities kCieXyz{{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}};
 
-// Returns the weights of red, green and blue in Y, or nullopt when the chromaticities span no triangle around a
+// Returns the weights of red, green and blue in Y, or nullopt when the chromaticities span no triangle, or no
 // white.
 std::optional<glm::dvec3> luminance_weights(const Chromaticities& from);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/vec3.hpp>
 #include <set>
 #include <utility>
@@ -45,20 +46,20 @@ void reconstruct_chroma(YcaImage& image) {
   }
 }
 
-// Converts to R, G, B, and takes back what the filter of the chroma added to the saturation.
-void to_rgb(YcaImage& image, const Imath::V3f& weights, bool filtered, std::array<std::vector<float>*, 3> channels) {
+// Converts filtered chroma to R, G, B, and takes back what the filter added to the saturation.
+void filtered_to_rgb(YcaImage& image, const Imath::V3f& weights, std::array<std::vector<float>*, 3> channels) {
   for (int y = 0; y < image.height; ++y) yca::YCAtoRGBA(weights, image.width, image.row(y), image.row(y));
   std::vector<Imf::Rgba> fixed(static_cast<std::size_t>(image.width));
   std::size_t at = 0;
   for (int y = 0; y < image.height; ++y) {
     const Imf::Rgba* const rows[] = {image.row(std::max(0, y - 1)), image.row(y),
                                      image.row(std::min(y + 1, image.height - 1))};
-    if (filtered) yca::fixSaturation(weights, image.width, rows, fixed.data());
-    const Imf::Rgba* const pixels = filtered ? fixed.data() : rows[1];
-    for (int x = 0; x < image.width; ++x, ++at) {
-      (*channels[0])[at] = pixels[x].r;
-      (*channels[1])[at] = pixels[x].g;
-      (*channels[2])[at] = pixels[x].b;
+    yca::fixSaturation(weights, image.width, rows, fixed.data());
+    for (const Imf::Rgba& pixel : fixed) {
+      (*channels[0])[at] = pixel.r;
+      (*channels[1])[at] = pixel.g;
+      (*channels[2])[at] = pixel.b;
+      ++at;
     }
   }
 }
@@ -72,7 +73,11 @@ class ColorDecoder {
     const auto matrix = to_srgb(from_);
     const auto weights = luminance_weights(from_);
     if (!matrix || !weights) return fmt::format("its chromaticities make no sense: {}", to_text(from_));
-    for (const std::string& layer : color_layers(image_.channels, true)) decode_luminance(layer, *weights);
+    for (const std::string& layer : color_layers(image_.channels, true)) {
+      constexpr double kLeast = 1e-6;  // of green, which is what red and blue leave of Y
+      if (std::abs(weights->y) < kLeast) return fmt::format("its green is no light: {}", to_text(from_));
+      decode_luminance(layer, glm::vec3(*weights));
+    }
     for (const std::string& name : subsampled_) {
       if (image_.find(name) < 0) continue;  // it has become a colour
       return fmt::format("its channel `{}` is subsampled, and there is no luminance and chroma to go with it", name);
@@ -93,7 +98,7 @@ class ColorDecoder {
     image_.channels[static_cast<std::size_t>(image_.find(from))].name = to;
   }
 
-  void decode_luminance(const std::string& layer, const glm::dvec3& weights) {
+  void decode_luminance(const std::string& layer, const glm::vec3& weights) {
     std::vector<float>*red = values_of(layer + "RY"), *blue = values_of(layer + "BY");
     if (red == nullptr || blue == nullptr) {
       for (const char* name : {"G", "B"}) {
@@ -103,12 +108,22 @@ class ColorDecoder {
       return rename(layer + "Y", layer + "R");
     }
     std::vector<float>& grey = *values_of(layer + "Y");
-    YcaImage image{image_.area.width(), image_.area.height(), std::vector<Imf::Rgba>(grey.size())};
-    for (std::size_t i = 0; i < grey.size(); ++i) image.pixels[i] = Imf::Rgba((*red)[i], grey[i], (*blue)[i]);
-    const bool filtered = subsampled_.contains(layer + "RY") || subsampled_.contains(layer + "BY");
-    if (filtered) reconstruct_chroma(image);
-    const glm::vec3 shares(weights);
-    to_rgb(image, {shares.x, shares.y, shares.z}, filtered, {red, &grey, blue});
+    if (subsampled_.contains(layer + "RY") || subsampled_.contains(layer + "BY")) {
+      constexpr float kLargestHalf = 65504;
+      YcaImage image{image_.area.width(), image_.area.height(), std::vector<Imf::Rgba>(grey.size())};
+      for (std::size_t i = 0; i < grey.size(); ++i) {
+        image.pixels[i] = Imf::Rgba((*red)[i], std::min(grey[i], kLargestHalf), (*blue)[i]);
+      }
+      reconstruct_chroma(image);
+      filtered_to_rgb(image, {weights.x, weights.y, weights.z}, {red, &grey, blue});
+    } else {
+      for (std::size_t i = 0; i < grey.size(); ++i) {
+        const float y = grey[i], r = ((*red)[i] + 1) * y, b = ((*blue)[i] + 1) * y;
+        grey[i] = (*red)[i] == 0 && (*blue)[i] == 0 ? y : (y - r * weights.x - b * weights.z) / weights.y;
+        (*red)[i] = r;
+        (*blue)[i] = b;
+      }
+    }
     rename(layer + "RY", layer + "R");
     rename(layer + "Y", layer + "G");
     rename(layer + "BY", layer + "B");
@@ -121,7 +136,9 @@ class ColorDecoder {
 
   void leave_out(const std::string& layer) {
     for (ChannelName& channel : image_.channels) {
-      if (channel.name.starts_with(layer)) channel.name.erase(0, layer.size());
+      if (!channel.name.starts_with(layer)) continue;
+      const std::string name = channel.name.substr(layer.size());
+      if (image_.find(name) < 0) channel.name = name;
     }
   }
 

@@ -52,6 +52,7 @@ class HdrReader {
 
   std::variant<FloatImage, std::string> read() {
     if (!read_header() || !is_allowed()) return problem_;
+    pixels_.reserve(header_.lines * header_.length);
     for (std::size_t line = 0; line < header_.lines; ++line) {
       if (!read_line()) return problem_.empty() ? "it ends too early" : problem_;
     }
@@ -222,7 +223,8 @@ class HdrReader {
         continue;
       }
       const std::uint64_t count = shift < 32 ? std::uint64_t{pixel[3]} << shift : left + 1;
-      if (left == header_.length || count > left) return fail("a run is longer than its scan line");
+      if (left == header_.length) return fail("a scan line begins with a run, and there is nothing to repeat");
+      if (count > left) return fail("a run is longer than its scan line");
       pixels_.insert(pixels_.end(), count, RgbePixel(pixels_.back()));
       left -= count, shift += 8;
     }

@@ -215,7 +215,7 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   std::size_t at = 0;
   const std::string_view kind = next_word(text, at);
   const auto width = to<int>(next_word(text, at)), height = to<int>(next_word(text, at));
-  const auto scale = to<double>(next_word(text, at));
+  const auto scale = to<float>(next_word(text, at));
   const bool grey = kind == "Pf";
   if ((!grey && kind != "PF") || !width || !height || *width < 1 || *height < 1 || !scale || *scale == 0 ||
       !std::isfinite(*scale)) {
@@ -231,7 +231,7 @@ DecodeResult decode_pfm(const Bytes& bytes, double memory) {
   const double needed = static_cast<double>(bytes.size()) + sizeof(float) * (static_cast<double>(count) + 3 * pixels);
   if (needed > memory) return too_much_memory(needed, memory);
   std::vector<float> values(count);
-  const float unit = static_cast<float>(std::abs(*scale));
+  const float unit = std::abs(*scale);
   const std::size_t row = values.size() / static_cast<std::size_t>(*height);
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::uint32_t bits = 0;

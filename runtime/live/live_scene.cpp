@@ -149,7 +149,7 @@ std::pair<dvec3, dvec3> means_of(const compiler::Background::Image& background) 
   const std::pair<dvec3, dvec3> grey = {dvec3(0.5), dvec3(0.5)};
   std::error_code error;
   if (!(std::filesystem::file_size(background.file, error) <= kMaxBackground)) return grey;
-  const auto read = read_environment(background.file);
+  const auto read = read_environment(background.file, {16.0 * kMaxBackground});
   const auto* image = std::get_if<EnvironmentImage>(&read);
   if (image == nullptr) return grey;
   dvec3 sums[2] = {dvec3(0), dvec3(0)};

@@ -49,6 +49,7 @@ float average_transmittance(float eta) {
 // Returns the factor by which a coat darkens light that a base of this albedo reflects, because the coat's inner side
 // sends the part `inner` of that light back to the base (OpenPBR 1.1, "Darkening"). A white base is not darkened.
 glm::vec3 coat_darkening(glm::vec3 albedo, float inner) {
+  if (!(inner < 1)) return glm::vec3(1);  // at grazing angles, where the coat's outer side lets nothing through
   return (1 - inner) / (1.0f - glm::min(albedo, glm::vec3(1)) * inner);
 }
 

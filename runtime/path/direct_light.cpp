@@ -17,6 +17,7 @@ namespace {
 constexpr double kShadowOffsets = 4, kMaxShortening = 0.1;
 // A shadow ray with more null interactions counts as occluded. Few paths have so many.
 constexpr int kMaxNullInteractions = 1024;
+static_assert(kVertexBatch <= LightQueries::kCapacity);
 
 // Returns the length of the shadow ray to a sampled point on a light: up to just before the light's surface.
 double shadow_length(const LightSample& light, const SurfacePoint& point) {

@@ -3,7 +3,6 @@
 // Tested by: tests/runtime/cli/frames/cli_frames_test.cpp
 #pragma once
 
-#include <ostream>
 #include <sstream>
 #include <string>
 
@@ -14,13 +13,16 @@ namespace fathom::cli {
 class BufferedMessages {
  public:
   explicit BufferedMessages(const Streams& streams)
-      : to_(streams.err), streams_{streams.in,    streams.out,          text_,           streams.terminal,
-                                   streams.color, streams.out_terminal, streams.columns, streams.options,
-                                   streams.quiet, streams.verbosity,     streams.files} {}
+      : from_(streams), streams_{streams.in,    streams.out,          text_,           streams.terminal,
+                                 streams.color, streams.out_terminal, streams.columns, streams.options,
+                                 streams.quiet, streams.verbosity,    streams.files} {}
+
+  BufferedMessages(const BufferedMessages&) = delete;
+  ~BufferedMessages() { from_.files = streams_.files; }
 
   const Streams& streams() const { return streams_; }  // the streams whose messages are held
 
-  void release() { to_ << text_.str(); }
+  void release() { from_.err << text_.str(); }
   // Prints the messages unless they equal `last`, and stores them in `last`.
   void release_if_new(std::string& last) {
     if (text_.str() != last) release();
@@ -29,7 +31,7 @@ class BufferedMessages {
 
  private:
   std::ostringstream text_;
-  std::ostream& to_;
+  const Streams& from_;
   const Streams streams_;
 };
 

@@ -19,7 +19,7 @@ void on_signal(int signal) {
     picture_asked = true;
   } else if (signal == SIGALRM) {
     if (!prepares) return;
-    constexpr std::string_view kNote = "note: interrupted before the first ray\n";
+    constexpr std::string_view kNote = "note: interrupted while the picture was prepared\n";
     (void)!::write(STDERR_FILENO, kNote.data(), kNote.size());
     ::_exit(kInterrupted);
   } else if (stop_asked.exchange(true)) {

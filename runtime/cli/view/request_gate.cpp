@@ -94,9 +94,10 @@ void RequestGate::run(const std::string& root, const std::string& server) {
   server_ = server;
   std::vector<pollfd> watched;
   while (true) {
-    watched = {{wake_out_.number(), POLLIN, 0}, {listener_.number(), POLLIN, 0}};
+    // Poll passes over a negative number.
+    watched = {{wake_out_.number(), POLLIN, 0}, {may_accept_ ? listener_.number() : -1, POLLIN, 0}};
     for (const Connection& connection : connections_) watch(connection, watched);
-    const int timeout = connections_.empty() ? -1 : kTick;
+    const int timeout = connections_.empty() && may_accept_ ? -1 : kTick;
     if (poll(watched.data(), watched.size(), timeout) < 0 && errno != EINTR) return;
     if (watched[0].revents != 0) break;
     accept_all();
@@ -119,21 +120,29 @@ void RequestGate::watch(const Connection& connection, std::vector<pollfd>& watch
 }
 
 void RequestGate::accept_all() {
+  may_accept_ = true;
   while (true) {
     Descriptor client(accept4(listener_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-    if (client.number() < 0) return;
+    if (client.number() < 0) {
+      // Without a free descriptor the connection stays in the queue, and poll would return at once for it.
+      const bool is_full = errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM;
+      if (is_full && drop_oldest(0)) continue;
+      may_accept_ = !is_full;
+      return;
+    }
     const int yes = 1;
     setsockopt(client.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    drop_oldest();
+    drop_oldest(kMaxWaiting - 1);
     connections_.emplace_back().client = std::move(client);
   }
 }
 
 // Makes room for a connection: a stranger who opens many closes their own.
-void RequestGate::drop_oldest() {
+bool RequestGate::drop_oldest(std::size_t most) {
   const auto waits = [](const Connection& connection) { return connection.state != Connection::State::Passed; };
-  if (static_cast<std::size_t>(std::count_if(connections_.begin(), connections_.end(), waits)) < kMaxWaiting) return;
+  if (static_cast<std::size_t>(std::count_if(connections_.begin(), connections_.end(), waits)) <= most) return false;
   connections_.erase(std::find_if(connections_.begin(), connections_.end(), waits));
+  return true;
 }
 
 bool RequestGate::advance(Connection& connection) {
@@ -170,7 +179,7 @@ bool RequestGate::read_head(Connection& connection) {
 
 bool RequestGate::pass_on(Connection& connection) {
   const auto passed = [](const Connection& other) { return other.state == Connection::State::Passed; };
-  Descriptor server(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  Descriptor server(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   sockaddr_un place{};
   place.sun_family = AF_UNIX;
   std::strncpy(place.sun_path, server_.c_str(), sizeof place.sun_path - 1);

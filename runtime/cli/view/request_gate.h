@@ -53,7 +53,8 @@ class RequestGate {
   struct Connection;
 
   void accept_all();
-  void drop_oldest();
+  // Drops the oldest connection that waits if more than `most` do. Returns false if not.
+  bool drop_oldest(std::size_t most);
   // The steps of a connection. They return false when it ends.
   bool advance(Connection& connection);
   bool read_head(Connection& connection);
@@ -64,6 +65,7 @@ class RequestGate {
   static void watch(const Connection& connection, std::vector<pollfd>& watched);
 
   int port_ = 0;
+  bool may_accept_ = true;  // false: no descriptor was free, and the listener is left alone for a tick
   Descriptor listener_, wake_in_, wake_out_;
   std::string root_, server_;
   std::list<Connection> connections_;  // the oldest first

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -172,8 +173,14 @@ std::optional<std::string> ViewServer::address() const {
 }
 
 void ViewServer::run() {
-  std::thread answering([this] { server_->http.listen_after_bind(); });
+  std::atomic<bool> has_ended = false;
+  std::thread answering([&] {
+    server_->http.listen_after_bind();
+    has_ended = true;
+  });
   server_->gate.run(server_->guard->root(), server_->socket);
+  // Before it runs, the server would forget that it is to stop.
+  while (!server_->http.is_running() && !has_ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   server_->http.stop();
   answering.join();
 }

@@ -269,6 +269,20 @@ TEST_CASE("exr kinds: chroma for every pixel, and in a layer", "[image]") {
   }
 }
 
+// Chroma for every pixel went through halfs: a sun above 65504 had an infinite luminance, and no green.
+TEST_CASE("exr kinds: luminance and chroma of floats keep the light of a sun", "[image]") {
+  const test::TemporaryFolder folder;
+  Spec spec;
+  spec.kinds = {constant("Y", 1e6f), constant("RY", 0.5f), constant("BY", -0.25f)};
+  for (Kind& kind : spec.kinds) kind.type = Imf::FLOAT;
+  write(folder.file("a.exr"), spec);
+  const FloatImage image = picture(folder.file("a.exr"));
+  const V3f weights = Imf::RgbaYca::computeYw(Imf::Chromaticities());
+  CHECK(image.channel("R")->front() == Approx(1.5e6));
+  CHECK(image.channel("G")->front() == Approx((1e6 - 1.5e6 * weights.x - 0.75e6 * weights.z) / weights.y));
+  CHECK(image.channel("B")->front() == Approx(0.75e6));
+}
+
 // Writes the picture as one part and 7 as the others, in this order of channels.
 void write_parts(const std::string& path, const std::vector<std::vector<Kind>>& parts) {
   std::vector<Imf::Header> headers;

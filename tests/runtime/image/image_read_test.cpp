@@ -214,6 +214,10 @@ TEST_CASE("image_read: what cannot be read is refused with its name and a reason
   CHECK(problem("a.tga", "x").find(".exr") != std::string::npos);
   CHECK(problem("b.pfm", "PF\n2 2\n-1.0\n1234").find("too early") != std::string::npos);
   CHECK(problem("c.pfm", "PF\n2000000 2000000\n-1.0\n1234").find("too large") != std::string::npos);
+  // A factor that is no float made every 0 a NaN.
+  for (const char* factor : {"-1e40", "-1e-50"}) {
+    CHECK(problem("e.pfm", std::string("Pf\n1 1\n") + factor + "\n1234").find("header") != std::string::npos);
+  }
   CHECK(problem("d.pfm", "PF\n-2 2\n-1.0\n1234").find("header") != std::string::npos);
   const auto missing = read_image(folder.file("none.png"));
   REQUIRE(std::holds_alternative<ImageReadError>(missing));
