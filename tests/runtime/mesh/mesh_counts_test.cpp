@@ -52,7 +52,7 @@ TEST_CASE("mesh counts: the same of more scenes, and with smaller cells", "[mesh
   check_counts(kMoreScenes, 48);
   check_counts(kScenes, 48);
 }
-TEST_CASE("mesh counts: the same with cells a quarter as large", "[mesh][.][nightly]") {
+TEST_CASE("mesh counts: the same with cells a quarter as large", "[.][nightly]") {
   check_counts(kScenes, 96);
   check_counts(kMoreScenes, 96);
 }
