@@ -84,11 +84,12 @@ int run_view(std::span<const std::string> args, const Streams& streams) {
   if (const auto code = parse(args, streams, request)) return *code;
   const auto readable = read_scene(request.scene, streams);
   if (const auto* code = std::get_if<ExitCode>(&readable)) return *code;
-  const Interruption interruption;
   RenderRequest render;
   render.scene = request.scene;
   render.quiet = true;
   ViewSession session(render, request.threads.value_or(0));
+  // From here on there is something to tidy up. A signal while the scene is read ends the program.
+  const Interruption interruption;
   const PrivateFolder folder;
   if (folder.path().empty()) {
     return fail(streams, kIo, "no private folder can be made",

@@ -215,6 +215,20 @@ TEST_CASE("view: strangers cannot hold the threads", "[cli][view]") {
   CHECK(server.client().get("scene").status == 200);
 }
 
+// Each connection that found no file descriptor woke the server again at once, and its own page got no answer.
+TEST_CASE("view: strangers cannot take all file descriptors", "[cli][view]") {
+  Attacked server;
+  CHECK(server.client().get("scene").status == 200);
+  server.client().limit_files(48);
+  std::vector<int> idle;
+  for (int i = 0; i < 200; ++i) {
+    idle.push_back(server.client().open());
+    ViewClient::send(idle.back(), "GET /x HTTP/1.1");
+  }
+  CHECK(server.client().get("scene").status == 200);
+  for (const int socket : idle) close(socket);
+}
+
 // Any user of the machine sees the arguments of all programs.
 TEST_CASE("view: the token is in no arguments", "[cli][view]") {
   const Folder folder;

@@ -185,6 +185,23 @@ TEST_CASE("view: parameters of JSON are written where they are", "[cli][view]") 
   CHECK(contains(folder.read("scene.json"), R"({"r": {"default": -0.5, "doc": "d"}, "s": 3},)"));
 }
 
+// A signal before the server ran was forgotten, and the program could not be ended any more but by force.
+TEST_CASE("view: a signal while the scene is read ends the program", "[cli][view]") {
+  const Folder folder;
+  std::string slow = "fathom 1\n";
+  for (int i = 0; i < 40; ++i) {
+    slow += "object expression(\"noise(x*" + std::to_string(i + 2) + ", y, z) - 0.3\", half_size = [1, 1, 1])\n";
+  }
+  folder.write("slow.fathom", slow);
+  for (const char* seconds : {"0.2", "0.6", "1"}) {
+    INFO(seconds);
+    // 137: timeout had to kill it
+    const std::string end =
+        std::string("timeout -k 20 ") + seconds + " \"$fathom\" view slow.fathom --no-open --port 0";
+    CHECK(folder.run_script(end + " > address; echo $?").out == "124\n");
+  }
+}
+
 TEST_CASE("view: what cannot be shown is a matter of usage", "[cli][view]") {
   const Folder folder;
   CHECK(folder.run("view -").code == 2);

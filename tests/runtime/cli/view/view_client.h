@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -64,6 +65,11 @@ class ViewClient {
     const std::size_t at = status.find("VmHWM:");
     REQUIRE(at != std::string::npos);
     return std::stoi(status.substr(at + 6));
+  }
+  // Bounds the files that the server may have open from here on.
+  void limit_files(unsigned most) const {
+    const rlimit limit{most, most};
+    REQUIRE(prlimit(child_, RLIMIT_NOFILE, &limit, nullptr) == 0);
   }
   const std::string& root() const { return root_; }  // "/TOKEN/"
   std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
