@@ -143,7 +143,7 @@ class Bisection {
   }
 
   static constexpr int kFew = 64;
-  static constexpr double kShare = 16;  // a search takes at most this part of what is left
+  static constexpr double kShare = 16;  // a search takes at most a sixteenth of what is left
 
   const int length_;
   const std::uint32_t cost_;

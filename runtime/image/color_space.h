@@ -19,8 +19,8 @@ struct Chromaticities {
 // primary has its weight of 1, not which light is neutral.
 inline constexpr Chromaticities kCieXyz{{1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}};
 
-// Returns the weights of red, green and blue in Y, or nullopt when the chromaticities span no triangle, or no
-// white.
+// Returns the weights of red, green and blue in Y, or nullopt when the primaries span no triangle or the white
+// has no luminance.
 std::optional<glm::dvec3> luminance_weights(const Chromaticities& from);
 
 // Returns the matrix that converts to linear sRGB: nullopt as above. Neutral colours stay neutral, because whites

@@ -117,6 +117,7 @@ class ColorDecoder {
       reconstruct_chroma(image);
       filtered_to_rgb(image, {weights.x, weights.y, weights.z}, {red, &grey, blue});
     } else {
+      // As yca::YCAtoRGBA(), which computes in halfs.
       for (std::size_t i = 0; i < grey.size(); ++i) {
         const float y = grey[i], r = ((*red)[i] + 1) * y, b = ((*blue)[i] + 1) * y;
         grey[i] = (*red)[i] == 0 && (*blue)[i] == 0 ? y : (y - r * weights.x - b * weights.z) / weights.y;

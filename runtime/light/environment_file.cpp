@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "runtime/image/image.h"
@@ -13,10 +14,12 @@
 namespace fathom::runtime {
 namespace {
 
-// Bytes a pixel while an EnvironmentMap is made: the pixels, the luminances twice, and the tables.
-constexpr std::size_t kBytesOfMap = sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(SphereCell) + 6;
+// Bytes a pixel while an EnvironmentMap is made: the pixels, the luminances before and after the filter, the cells,
+// and the running sums with their guide, which has an entry for at most two cells.
+constexpr std::size_t kBytesOfMap =
+    sizeof(glm::vec3) + 2 * sizeof(float) + sizeof(SphereCell) + sizeof(float) + sizeof(std::uint32_t) / 2;
 
-// Infinity, as halfs hold at the sun, becomes the largest half. A limit keeps sums of pixels from overflowing.
+// Infinity, as half floats hold at the sun, becomes the largest half. A limit keeps sums of pixels from overflowing.
 float usable(float value) {
   constexpr float kLargestHalf = 65504, kLargest = 1e20f;
   if (!(value > 0)) return 0;
@@ -44,7 +47,8 @@ std::variant<EnvironmentImage, ImageReadError> read_environment(const std::strin
         fmt::format("`{}` has no channels R, G and B and no Y; its channels: {}", path, channel_names(image))};
   }
   const double pixels = static_cast<double>(image.area.pixels());
-  const double needed = pixels * static_cast<double>(image.values.size() * sizeof(float) + kBytesOfMap);
+  const std::size_t bytes = std::max(image.values.size() * sizeof(float) + sizeof(glm::vec3), kBytesOfMap);
+  const double needed = pixels * static_cast<double>(bytes);
   if (needed > limits.memory) {
     return ImageReadError{fmt::format("`{}` cannot be used: {}", path, too_much_memory(needed, limits.memory))};
   }

@@ -17,7 +17,7 @@ struct UnevenLight {
   // `height` rows of `width` cells: their luminances, and perhaps the pixels of an image.
   UnevenLight(int width, int height, std::vector<float> luminances, std::span<const glm::vec3> pixels = {});
 
-  double mean_of_all;
+  double mean_of_all;  // luminance
   PiecewiseConstantSphere sphere;
   float even;  // irradiance by the rest, which is not sampled, as luminance
 };

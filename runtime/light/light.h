@@ -55,7 +55,7 @@ struct LightQueries {
 
 class Lights {
  public:
-  // `image` is the image that the scene's background names, if it names one.
+  // `map` is of the image that the scene's background names, if it names one.
   explicit Lights(const compiler::CompiledScene& scene, std::shared_ptr<const EnvironmentMap> map = nullptr);
 
   // True if there is nothing to sample.

@@ -17,7 +17,6 @@ namespace {
 constexpr double kShadowOffsets = 4, kMaxShortening = 0.1;
 // A shadow ray with more null interactions counts as occluded. Few paths have so many.
 constexpr int kMaxNullInteractions = 1024;
-static_assert(kVertexBatch <= LightQueries::kCapacity);
 
 // Returns the length of the shadow ray to a sampled point on a light: up to just before the light's surface.
 double shadow_length(const LightSample& light, const SurfacePoint& point) {
@@ -104,6 +103,7 @@ void sample_lights(const RenderContext& context, VertexBatch& batch) {
   batch.samplers.draw_pairs(batch.count, u.data(), v.data());
   VertexRow<bool> active;
   for (std::size_t i = 0; i < batch.count; ++i) active[i] = may_sample_light(context, batch, i);
+  static_assert(kVertexBatch <= LightQueries::kCapacity);
   const auto first = [&](const auto& row) { return std::span(row).first(batch.count); };
   lights.sample({first(batch.light_context), first(choice), first(u), first(v), first(active)}, batch.light_sample);
 }

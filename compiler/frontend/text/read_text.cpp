@@ -93,16 +93,13 @@ JsonComments comments_of_text(const Source& source, const syntax::File& file) {
   const std::size_t of_file = comments_of_file(source.text(), tokens);
   for (std::size_t i = 0; i < tokens.comments.size(); ++i) {
     const text::Comment& comment = tokens.comments[i];
-    const std::string text = source.text().substr(comment.span.begin, comment.span.end - comment.span.begin);
-    if (i < of_file) {
-      comments.emplace(0, text);  // before the first property, which no part of the text gives
-      continue;
+    std::uint32_t place = 0;  // of the first property, which no part of the text gives
+    if (i >= of_file && !places.empty()) {
+      const auto next = places.lower_bound(comment.span.begin);
+      const bool beside = !comment.first_on_line && next != places.begin();
+      place = beside || next == places.end() ? *std::prev(next) : *next;
     }
-    const auto next = places.lower_bound(comment.span.begin);
-    if (places.empty()) break;
-    const bool beside = !comment.first_on_line && next != places.begin();
-    const auto at = beside || next == places.end() ? std::prev(next) : next;
-    comments.emplace(*at, text);
+    comments.emplace(place, source.text().substr(comment.span.begin, comment.span.end - comment.span.begin));
   }
   return comments;
 }

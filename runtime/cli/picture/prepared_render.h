@@ -24,7 +24,7 @@ struct PreparedRender {
 struct RenderCache {
   std::shared_ptr<runtime::RegionStore> regions = std::make_shared<runtime::RegionStore>();
   std::string background_file;
-  std::shared_ptr<const runtime::EnvironmentMap> background;    // image in background_file
+  std::shared_ptr<const runtime::EnvironmentMap> background;    // of the image in background_file
   std::string messages;                                         // the compiler's last messages
   bool begun = false;  // a picture was drawn, so the notes common to all pictures have been printed
 };

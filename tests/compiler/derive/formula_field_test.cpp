@@ -48,7 +48,7 @@ Scene displaced_ball(const std::string& formula) {
 
 }  // namespace
 
-// A hundred formulas of noise took 16 seconds to compile, and each further one as much again.
+// A hundred formulas of noise took 6.7 seconds to check, and each further hundred as much again.
 TEST_CASE("the searches of many formulas share an allowance", "[derive][formula_field]") {
   const Scene scene =
       scene_of(R"_({"type": "expression", "half_size": [2, 2, 2], "formula": "noise(9*x, 7*y, z)"})_");
@@ -57,11 +57,11 @@ TEST_CASE("the searches of many formulas share an allowance", "[derive][formula_
   compiler::SearchAllowance one;
   const double alone = compiler::bound_formula(scene.graph, formula, box, one).lipschitz;
   CHECK(one.left < compiler::SearchAllowance().left);
-  compiler::SearchAllowance shared;
+  compiler::SearchAllowance shared{4};
   double last = 0;
-  for (int i = 0; i < 400; ++i) last = compiler::bound_formula(scene.graph, formula, box, shared).lipschitz;
-  CHECK(shared.left < 4);
-  CHECK(last >= alone);  // after a shorter search
+  for (int i = 0; i < 100; ++i) last = compiler::bound_formula(scene.graph, formula, box, shared).lipschitz;
+  CHECK(shared.left < 0.1);
+  CHECK(last > alone);  // after a shorter search
   CHECK(std::isfinite(last));
 }
 

@@ -224,7 +224,7 @@ inline const Counted kMoreScenes[] = {
      {0, 0, 0},
      1.4},
     {"double onion", "object sphere(.8).onion(.1).onion(.01)", 2, 2, {0, 0, 0}, 1},
-    {"slot hair gap",
+    {"mirrored cubes",
      "object (box([.5, .5, .5]).translate([.502, 0, 0])).mirror([1, 0, 0]).rotate([0, 0, 45])",
      2,
      0,
