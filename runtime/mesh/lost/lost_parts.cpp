@@ -1,9 +1,11 @@
 #include "runtime/mesh/lost/lost_parts.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <tuple>
 
+#include "runtime/mesh/lost/near_pieces.h"
 #include "runtime/mesh/lost/thin_places.h"
 #include "runtime/mesh/lost/thin_region.h"
 #include "vm/program/parallel_for.h"
@@ -13,6 +15,10 @@ namespace {
 
 // Number of cells by which the mesh may fall short of a sharp edge or tip, which is thin at any resolution.
 constexpr int kReachCells = 2;
+
+// Numbers of places that are examined, and of all balls of their walks, at least kLeastBalls each. A fractal has tens
+// of thousands of places, which would take most of the time of a mesh.
+constexpr std::size_t kMostPlaces = 8192, kAllBalls = 1024 * ThinRegionSearch::kMostBalls, kLeastBalls = 60;
 
 using Fate = ThinRegion::Fate;
 
@@ -32,15 +38,32 @@ std::vector<Group> group(const SignedLattice& signs, const std::vector<ThinPlace
   return groups;
 }
 
+// Leaves at most kMostPlaces of all places, evenly by number, and first of those of which more is known.
+std::vector<ThinPlace> limited(const std::vector<ThinPlace>& all) {
+  if (all.size() <= kMostPlaces) return all;
+  std::vector<ThinPlace> places;
+  for (const bool is_first : {true, false}) {
+    std::vector<const ThinPlace*> some;
+    for (const ThinPlace& place : all) {
+      if ((place.on_edge || place.is_between_pieces) == is_first) some.push_back(&place);
+    }
+    const std::size_t count = std::min(some.size(), kMostPlaces - places.size());
+    for (std::size_t i = 0; i < count; ++i) places.push_back(*some[i * some.size() / count]);
+  }
+  return places;
+}
+
 // Examines the places. In a group, all after one in a sheet are taken for places of that sheet.
 std::vector<ThinRegion> examine_all(const MeshField& field, const CellLattice& lattice, const SignedLattice& signs,
-                                    const std::vector<ThinPlace>& places, int threads) {
+                                    const LatticeLabels& labels, const std::vector<ThinPlace>& places, int threads) {
   std::vector<ThinRegion> regions(places.size());
   if (places.empty()) return regions;
-  const LatticeLabels labels(signs, lattice);
   const std::vector<Group> groups = group(signs, places);
+  const auto balls =
+      static_cast<int>(std::clamp<std::size_t>(kAllBalls / places.size(), kLeastBalls, ThinRegionSearch::kMostBalls));
   parallel_for(
-      threads, groups.size(), [&] { return std::make_unique<ThinRegionSearch>(field, lattice, signs, labels); },
+      threads, groups.size(),
+      [&] { return std::make_unique<ThinRegionSearch>(field, lattice, signs, labels, balls); },
       [&](std::unique_ptr<ThinRegionSearch>& search, std::size_t number) {
         const ThinRegion* lost = nullptr;
         for (const std::size_t i : groups[number]) {
@@ -80,8 +103,12 @@ std::size_t count_islands(const std::vector<ThinPlace>& places, const std::vecto
 
 LostParts find_lost_parts(const MeshField& field, const CellLattice& lattice, const SignedLattice& signs,
                           int threads) {
-  const std::vector<ThinPlace> places = find_thin_places(field, lattice, signs, threads);
-  const std::vector<ThinRegion> regions = examine_all(field, lattice, signs, places, threads);
+  const LatticeLabels labels(signs, lattice);
+  std::vector<ThinPlace> places = find_narrow_places(field, lattice, signs, labels, threads);
+  const std::vector<ThinPlace> thin = find_thin_places(field, lattice, signs, threads);
+  places.insert(places.end(), thin.begin(), thin.end());
+  places = limited(places);
+  const std::vector<ThinRegion> regions = examine_all(field, lattice, signs, labels, places, threads);
   std::map<std::tuple<std::uint32_t, std::uint32_t, bool, bool>, LostPart> found;  // by surfaces and kind
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const ThinRegion& region = regions[i];

@@ -21,6 +21,7 @@ struct ThinPlace {
   glm::dvec3 place;    // programs' coordinates
   Side side;           // of the point, not Unknown
   bool on_edge;        // the point lies between two corners of the other side that the mesh connects
+  bool is_between_pieces = false;  // of the mesh, and on their side
 };
 
 // Returns candidates in the order of cells. The same for any number of threads.

@@ -17,9 +17,8 @@ constexpr double kSheetStep = 0.5;
 constexpr double kTaper = 0.8;  // a part thins out if it is thinner by this factor nearby
 // A tip, which has places of any thickness, has larger balls beside one. A neck is wider where it ends.
 constexpr double kLongGrowth = 1.3, kTornGrowth = 2.5;
-// The walk over balls: its reach in cells, the most balls, the length of steps and the least ball, in radii.
+// The walk over balls: its reach in cells, the length of steps and the least ball, in radii.
 constexpr double kReach = 2.5, kStepShare = 0.9, kLeastBall = 0.4;
-constexpr int kMostBalls = 600;
 
 const std::vector<glm::dvec3>& directions() {
   static const std::vector<glm::dvec3> all = [] {
@@ -177,7 +176,7 @@ bool ThinRegionSearch::add_contact(const ProbedPoint& point, LatticePlace at, st
   return true;
 }
 
-ThinRegionSearch::Walked ThinRegionSearch::explore(const ProbedPoint& from) {
+ThinRegionSearch::Walked ThinRegionSearch::explore(const ProbedPoint& from, bool passes_corners) {
   Walked walked;
   const double least = std::max(kLeastBall * from.radius, 0x1p-10 * lattice_.cell);
   if (from.radius < least) return walked;
@@ -199,10 +198,14 @@ ThinRegionSearch::Walked ThinRegionSearch::explore(const ProbedPoint& from) {
   std::priority_queue<ProbedPoint, std::vector<ProbedPoint>, decltype(smaller)> queue(smaller);
   queue.push(from);
   is_new(from);
-  for (int ball = 0; ball < kMostBalls && !queue.empty(); ++ball) {
+  for (int ball = 0; ball < most_balls_ && !queue.empty(); ++ball) {
     const ProbedPoint point = queue.top();
     queue.pop();
-    if (add_contacts(point, walked.labels)) continue;
+    if (add_contacts(point, walked.labels)) {
+      if (!passes_corners) continue;
+      const auto is_another = [&](std::uint32_t label) { return label != walked.labels.front(); };
+      if (std::ranges::any_of(walked.labels, is_another)) break;
+    }
     walked.largest = std::max(walked.largest, point.radius);
     if (glm::distance(point.place, from.place) > kReach * lattice_.cell) {
       walked.is_long = true;
@@ -244,6 +247,41 @@ bool ThinRegionSearch::find_sheet(const ThinPlace& thin, const Section& section,
   return true;
 }
 
+std::optional<glm::dvec3> ThinRegionSearch::follow_gap(glm::dvec3 from, glm::dvec3 to) {
+  constexpr double kFirstStep = 0.5, kNearStep = 0x1p-3, kLastStep = 0x1p-9;  // in cells
+  constexpr int kMaxSteps = 64;
+  const double length = glm::distance(from, to);
+  const glm::dvec3 direction = (to - from) / length;
+  const ProbedPoint begin = probe_.at(from), end = probe_.at(to);
+  if (begin.side != end.side || begin.side == Side::Unknown) return std::nullopt;
+  const double first = probe_.way_out(begin, direction, length);
+  const double last = length - probe_.way_out(end, -direction, length);
+  const ProbedPoint between = probe_.at(from + 0.5 * (first + last) * direction);
+  if (between.side != opposite(begin.side)) return std::nullopt;
+  Section at = thinnest(between);
+  double step = kFirstStep * lattice_.cell;
+  for (int i = 0; i < kMaxSteps && step > kLastStep * lattice_.cell; ++i) {
+    if (at.middle.side != between.side) return std::nullopt;
+    const auto [u, v] = frame_of(at.across);
+    Section best = at;
+    for (const glm::dvec3& way : {u, -u, v, -v}) {
+      const glm::dvec3 target = at.middle.place + step * way;
+      Section next;
+      if (find_beside(at, target, next)) {
+        if (next.middle.side == between.side && next.width < best.width) best = next;
+      } else if (step < kNearStep * lattice_.cell) {
+        return target;  // a gap that bends is met again by shorter steps
+      }
+    }
+    if (best.width < at.width) {
+      at = best;
+    } else {
+      step /= 2;
+    }
+  }
+  return std::nullopt;
+}
+
 ThinRegion ThinRegionSearch::examine(const ThinPlace& thin, bool is_apart) {
   ThinRegion region;
   const ProbedPoint start = probe_.at(thin.place);
@@ -256,7 +294,7 @@ ThinRegion ThinRegionSearch::examine(const ThinPlace& thin, bool is_apart) {
   if (is_thin && (find_sheet(thin, section, region) || find_sheet(thin, here, region))) return region;
   describe(section, region);
   // A thick part may have a thin neck, where it may be torn.
-  Walked walked = explore(section.middle);
+  Walked walked = explore(section.middle, thin.is_between_pieces);
   const double growth = walked.largest / section.middle.radius;
   if (walked.labels.size() >= 2) {
     region.fate = ThinRegion::Fate::Torn;

@@ -1,11 +1,13 @@
 // A thin part of the solid, or a thin gap, as a lattice sees it.
 //
 // A walk over balls without a zero, the largest first, explores the part from one of its points, up to where corners
-// of the lattice are in sight: those are in the mesh. If the corners are of two pieces of the mesh, the mesh is torn
-// at that place. If the walk meets none, the mesh has nothing of the part. A part that goes on in all directions of a
-// plane is a sheet, and what lies on its two sides is one in the mesh.
-// Tested by: tests/runtime/mesh/mesh_counts_test.cpp
+// of the lattice are in sight: those are in the mesh. From a place between two pieces it goes on, up to corners of
+// both. If the corners are of two pieces of the mesh, the mesh is torn at that place. If the walk meets none, the
+// mesh has nothing of the part. A part that goes on in all directions of a plane is a sheet, and what lies on its two
+// sides is one in the mesh. Tested by: tests/runtime/mesh/mesh_counts_test.cpp
 #pragma once
+
+#include <optional>
 
 #include "runtime/mesh/lost/field_probe.h"
 #include "runtime/mesh/lost/lattice_labels.h"
@@ -26,13 +28,19 @@ struct ThinRegion {
 
 class ThinRegionSearch {
  public:
-  // All arguments must outlive this object, which belongs to one thread.
+  static constexpr int kMostBalls = 600;
+
+  // All arguments must outlive this object, which belongs to one thread. `most_balls`: of a walk.
   ThinRegionSearch(const MeshField& field, const CellLattice& lattice, const SignedLattice& signs,
-                   const LatticeLabels& labels)
-      : probe_(field), lattice_(lattice), signs_(signs), labels_(labels) {}
+                   const LatticeLabels& labels, int most_balls = kMostBalls)
+      : probe_(field), lattice_(lattice), signs_(signs), labels_(labels), most_balls_(most_balls) {}
 
   // Examines the part that contains a place. `is_apart`: no surface of the mesh is near.
   ThinRegion examine(const ThinPlace& thin, bool is_apart);
+
+  // Follows the gap between two points of one side to where it is narrower, and returns a point of their side if the
+  // gap has an opening there.
+  std::optional<glm::dvec3> follow_gap(glm::dvec3 from, glm::dvec3 to);
 
  private:
   static constexpr double kOpenWidth = 1.5;  // in cells: the mesh has parts that are wider
@@ -59,7 +67,7 @@ class ThinRegionSearch {
   bool is_sheet(const Section& from, double& least);
   void describe(const Section& section, ThinRegion& region);
   bool find_sheet(const ThinPlace& thin, const Section& section, ThinRegion& region);
-  Walked explore(const ProbedPoint& from);
+  Walked explore(const ProbedPoint& from, bool passes_corners);
   bool add_contact(const ProbedPoint& point, LatticePlace at, std::vector<std::uint32_t>& labels);
   bool add_contacts(const ProbedPoint& point, std::vector<std::uint32_t>& labels);
 
@@ -67,6 +75,7 @@ class ThinRegionSearch {
   const CellLattice& lattice_;
   const SignedLattice& signs_;
   const LatticeLabels& labels_;
+  const int most_balls_;
   std::vector<glm::dvec3> places_;
   std::vector<ProbedPoint> around_;
 };

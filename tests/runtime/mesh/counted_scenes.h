@@ -52,6 +52,12 @@ inline const Counted kScenes[] = {
      1.2},
     {"hair", "object box([1, .5, .5]) + cylinder(.004, .5).translate([.1, .6, .05])", 1, 0, {.1, .8, .05}, .4},
     // Near and touching.
+    {"tip in plate",
+     "object box([1, .2, 1]) + cone(0, .3, .4).translate([.113, .59, .07])",
+     1,
+     0,
+     {.113, .2, .07},
+     .1},
     {"balls", "object sphere(1)\nobject sphere(1).translate([2.01, 0.03, 0.02])", 2, 0, {1.005, 0, 0}, 0.4},
     {"lid",
      "object box([20, 10, 15]) - box([18.4, 18.4, 13.4]).translate([0, 10, 0])\n"
