@@ -78,8 +78,9 @@ class NearPairSearch {
 
   void add_nearest(LatticePlace corner, std::uint32_t number) {
     const bool inside = signs_.is_corner_inside(number);
+    const std::uint32_t own = labels_.of(number);
     int least = 3 * kNearCells * kNearCells + 1;
-    LatticePlace nearest;
+    LatticePlace nearest{};
     std::uint32_t label = 0;
     for (int z = -kNearCells; z <= kNearCells; ++z) {
       for (int y = -kNearCells; y <= kNearCells; ++y) {
@@ -90,14 +91,14 @@ class NearPairSearch {
           if (std::min({near.at[0], near.at[1], near.at[2]}) < 0) continue;
           const std::uint32_t other = signs_.corners().find(key_of(near));
           if (other == KeyMap::kNone || signs_.is_corner_inside(other) != inside) continue;
-          if (labels_.of(other) == labels_.of(number)) continue;
+          if (labels_.of(other) == own) continue;
           least = distance, nearest = near, label = labels_.of(other);
         }
       }
     }
     if (least > 3 * kNearCells * kNearCells) return;
-    const auto pair = std::minmax(label, labels_.of(number));
-    const auto [at, is_new] = found_.try_emplace({block_of(corner, kGapCells), pair.first, pair.second});
+    const auto [at, is_new] =
+        found_.try_emplace({block_of(corner, kGapCells), std::min(label, own), std::max(label, own)});
     if (is_new) {
       at->second = {corner, nearest, cell_at(corner), inside ? Side::Inside : Side::Outside};
     }

@@ -4,7 +4,8 @@
 // of the lattice are in sight: those are in the mesh. From a place between two pieces it goes on, up to corners of
 // both. If the corners are of two pieces of the mesh, the mesh is torn at that place. If the walk meets none, the
 // mesh has nothing of the part. A part that goes on in all directions of a plane is a sheet, and what lies on its two
-// sides is one in the mesh. Tested by: tests/runtime/mesh/mesh_counts_test.cpp
+// sides is one in the mesh.
+// Tested by: tests/runtime/mesh/mesh_counts_test.cpp
 #pragma once
 
 #include <optional>
