@@ -9,8 +9,11 @@
 // Tested by: tests/runtime/cli/cli_mesh_test.cpp
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <glm/common.hpp>
 
 #include "runtime/base/atomic_file.h"
 #include "runtime/base/machine.h"
@@ -97,8 +100,12 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
   return std::nullopt;
 }
 
-// Formats a place of the scene.
-std::string place_text(glm::dvec3 p) { return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x, p.y, p.z); }
+// Formats a place of the scene to a tenth of `size`, so that it is found in parts far from zero, too.
+std::string place_text(glm::dvec3 p, double size) {
+  const double scale = std::pow(10, std::ceil(-std::log10(std::max(size, 1e-9))) + 1);
+  p = glm::round(p * scale) / scale + 0.0;  // no -0
+  return fmt::format("({:.12g}, {:.12g}, {:.12g})", p.x, p.y, p.z);
+}
 std::string box_text(const compiler::Box& b) {
   return fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z);
 }
@@ -148,7 +155,7 @@ std::string lost_part_text(const compiler::CompiledScene& scene, const runtime::
   std::string text = part.is_gap ? "a gap of " + name : "a part of " + name;
   if (part.is_gap && name != other) text = fmt::format("a gap between {} and {}", name, other);
   text += fmt::format(", {:.2g} {} at {}: ", part.thickness, part.is_gap ? "wide" : "thin",
-                      place_text(part.place + scene.origin));
+                      place_text(part.place + scene.origin, part.thickness));
   if (part.is_torn) {
     text += part.is_gap ? "the mesh closes it" : "it is in pieces in the mesh";
   } else {

@@ -91,6 +91,14 @@ TEST_CASE("cli: mesh names lost parts and their remedy", "[cli]") {
   const Result result = folder.run("mesh leaf.json --resolution 32 -o a.stl");
   CHECK(result.code == 0);
   CHECK_THAT(result.err, Contains("warning: a part of `leaf`") && Contains("--tolerance 0.00"));
+  // Far from zero four digits did not tell the place.
+  folder.write("far.fathom",
+               "fathom 1\nobject sphere(.5).translate([12340, 0, 0])\n"
+               "object \"leaf\" box([1, .01, 1]).translate([12345.5, 0, 0])\n");
+  const Result far = folder.run("mesh far.fathom --resolution 32 -o a.stl");
+  const std::string place = far.err.substr(far.err.find(" at (") + 5);
+  CHECK(std::stod(place) == Approx(12345.5).margin(1.01));
+  CHECK(place.find('.') < place.find(','));
 }
 
 TEST_CASE("cli: mesh reports wrong options, too much memory and files that cannot be written", "[cli]") {
