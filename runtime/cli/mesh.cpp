@@ -9,9 +9,7 @@
 // Tested by: tests/runtime/cli/cli_mesh_test.cpp
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
 
@@ -102,7 +100,8 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
 
 // Formats a place of the scene to a tenth of `size`, so that it is found in parts far from zero, too.
 std::string place_text(glm::dvec3 p, double size) {
-  const double scale = std::pow(10, std::ceil(-std::log10(std::max(size, 1e-9))) + 1);
+  double scale = 1;
+  while (scale * size < 10 && scale < 1e12) scale *= 10;
   p = glm::round(p * scale) / scale + 0.0;  // no -0
   return fmt::format("({:.12g}, {:.12g}, {:.12g})", p.x, p.y, p.z);
 }
