@@ -38,7 +38,8 @@ std::vector<Group> group(const SignedLattice& signs, const std::vector<ThinPlace
   return groups;
 }
 
-// Leaves at most kMostPlaces of all places, evenly by number, and first of those of which more is known.
+// Leaves at most kMostPlaces, evenly by number: first those on edges and between pieces, where the mesh is most
+// likely wrong.
 std::vector<ThinPlace> limited(const std::vector<ThinPlace>& all) {
   if (all.size() <= kMostPlaces) return all;
   std::vector<ThinPlace> places;

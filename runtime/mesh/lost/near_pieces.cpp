@@ -38,10 +38,11 @@ class NearPairSearch {
     find_blocks();
     std::set<std::uint32_t> known;
     for (const LatticeKey edge : signs_.edges().keys()) {
+      const std::uint32_t cell = signs_.cells().find(key_of(cells_around(place_of(edge), axis_of(edge)).front()));
       for (const int end : {0, 1}) {
         const LatticePlace corner = place_of(edge).moved(axis_of(edge), end);
         const std::uint32_t number = signs_.corners().find(key_of(corner));
-        if (known.insert(number).second && may_have_another(corner, number)) add_nearest(corner, number);
+        if (known.insert(number).second && may_have_another(corner, number)) add_nearest(corner, number, cell);
       }
     }
     std::vector<NearPair> all;
@@ -76,7 +77,7 @@ class NearPairSearch {
     return false;
   }
 
-  void add_nearest(LatticePlace corner, std::uint32_t number) {
+  void add_nearest(LatticePlace corner, std::uint32_t number, std::uint32_t cell) {
     const bool inside = signs_.is_corner_inside(number);
     const std::uint32_t own = labels_.of(number);
     int least = 3 * kNearCells * kNearCells + 1;
@@ -99,20 +100,7 @@ class NearPairSearch {
     if (least > 3 * kNearCells * kNearCells) return;
     const auto [at, is_new] =
         found_.try_emplace({block_of(corner, kGapCells), std::min(label, own), std::max(label, own)});
-    if (is_new) {
-      at->second = {corner, nearest, cell_at(corner), inside ? Side::Inside : Side::Outside};
-    }
-  }
-
-  std::uint32_t cell_at(LatticePlace corner) const {
-    for (unsigned i = 0; i < 8; ++i) {
-      LatticePlace cell = corner;
-      bool is_within = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) is_within = (cell.at[axis] -= i >> axis & 1) >= 0 && is_within;
-      const std::uint32_t found = is_within ? signs_.cells().find(key_of(cell)) : KeyMap::kNone;
-      if (found != KeyMap::kNone) return found;
-    }
-    return 0;
+    if (is_new) at->second = {corner, nearest, cell, inside ? Side::Inside : Side::Outside};
   }
 
   const SignedLattice& signs_;
