@@ -312,7 +312,7 @@ TEST_CASE("regions: rays meet what they meet without them, to the bit", "[field]
 
 // Under emulation a picture of 1200 shapes takes minutes.
 compiler::CompiledScene large_scene() {
-  return test::compiled(many(test::scaled_cases(8) < 8 ? 400 : 1200, true, true, true));
+  return test::compiled(many(test::few_cases() ? 400 : 1200, true, true, true));
 }
 
 // The middle of an image that is large enough for regions to pay off.
@@ -336,7 +336,7 @@ TEST_CASE("regions: one picture with and without them, near the limit of memory,
   std::size_t least = freely, most = 0;
   for (const std::size_t memory : {freely * 2, freely * 9 / 10, freely / 2, freely / 100}) {
     std::vector<std::size_t> bytes;
-    for (const int threads : test::scaled_cases(8) < 8 ? std::vector{1, 3} : std::vector{1, 2, 3, 7}) {
+    for (const int threads : test::few_cases() ? std::vector{1, 3} : std::vector{1, 2, 3, 7}) {
       options.threads = threads, options.region_memory = memory;
       const RenderResult result = render(scene, options);
       CHECK(result.film.hash() == expected);

@@ -13,7 +13,7 @@ using namespace fathom::test;
 using Catch::Contains;
 
 // Long enough to be interrupted: 0.6 s on one core in a release build, 1 s under the sanitizers.
-const std::string kSpp = std::to_string(fathom::test::scaled_cases(400) < 400 ? 96 : 400);
+const std::string kSpp = fathom::test::few_cases() ? "96" : "400";
 const std::string kSlow = R"({
   "version": 1,
   "params": {"r": 0.5},
