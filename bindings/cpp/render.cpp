@@ -13,7 +13,7 @@
 #include "compiler/scene/framing.h"
 #include "runtime/base/machine.h"
 #include "runtime/denoise/denoise.h"
-#include "runtime/light/environment_file.h"
+#include "runtime/light/environment_map.h"
 #include "runtime/sampling/shutter.h"
 
 namespace fathom {
@@ -58,11 +58,11 @@ Error set_samples(const RenderOptions& options, compiler::RenderSettings& settin
 Error read_background(Picture& picture, double memory) {
   const compiler::Background& background = picture.scene.background;
   if (background.type != compiler::Background::Type::Image) return {};
-  auto image = runtime::read_environment(background.image.file, {memory});
-  if (const auto* fault = std::get_if<runtime::ImageReadError>(&image)) {
-    return {fault->missing ? Error::Kind::File : Error::Kind::BadScene, "the scene's background: " + fault->problem};
+  auto read = runtime::read_background(background.image.file, {memory});
+  if (const auto* unread = std::get_if<runtime::ImageReadError>(&read)) {
+    return {unread->missing ? Error::Kind::File : Error::Kind::BadScene, unread->problem};
   }
-  picture.options.environment = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
+  picture.options.environment = std::get<std::shared_ptr<const runtime::EnvironmentMap>>(std::move(read));
   return {};
 }
 

@@ -13,7 +13,6 @@
 #include "compiler/scene/compiled_scene.h"
 #include "compiler/source/limits.h"
 #include "runtime/field/field.h"
-#include "runtime/light/environment_file.h"
 #include "vm/native/native_program.h"
 
 namespace fathom {

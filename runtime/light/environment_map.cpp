@@ -62,6 +62,18 @@ EnvironmentMap::EnvironmentMap(const EnvironmentImage& image)
     : width(image.width),
       height(image.height),
       digest(digest_of(image.pixels)),
-      light(width, height, filtered_luminance(image), image.pixels) {}
+      light(width, height, filtered_luminance(image), image.pixels),
+      warning(image.warning) {}
+
+std::variant<std::shared_ptr<const EnvironmentMap>, ImageReadError> read_background(const std::string& path,
+                                                                                    const ReadLimits& limits) {
+  constexpr auto kAbout = "the scene's background: ";
+  auto read = read_environment(path, limits);
+  if (auto* unread = std::get_if<ImageReadError>(&read))
+    return ImageReadError{kAbout + unread->problem, unread->missing};
+  auto& image = std::get<EnvironmentImage>(read);
+  if (!image.warning.empty()) image.warning = kAbout + image.warning;
+  return std::make_shared<const EnvironmentMap>(image);
+}
 
 }  // namespace fathom::runtime

@@ -3,7 +3,10 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "runtime/light/environment_file.h"
@@ -28,6 +31,11 @@ struct EnvironmentMap {
   int width, height;
   vm::Digest digest;  // of the pixels
   UnevenLight light;
+  std::string warning;  // as of EnvironmentImage
 };
+
+// Reads the map of a scene's background. Messages say that they are about it.
+std::variant<std::shared_ptr<const EnvironmentMap>, ImageReadError> read_background(const std::string& path,
+                                                                                    const ReadLimits& limits);
 
 }  // namespace fathom::runtime

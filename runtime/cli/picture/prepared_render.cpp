@@ -18,21 +18,12 @@ namespace {
 using MaybeScene = std::variant<compiler::CompiledScene, ExitCode>;
 
 // Reads the environment map that the scene's background names.
-std::optional<ExitCode> read_background(const compiler::Background& background, const SceneArguments& arguments,
+std::optional<ExitCode> find_background(const compiler::Background& background, const SceneArguments& arguments,
                                         RenderCache& cache, runtime::RenderOptions& options, const Streams& streams) {
   if (background.type != compiler::Background::Type::Image) return std::nullopt;
   const std::string& file = background.image.file;
   if (!cache.background || cache.background_file != file) {
-    auto image = runtime::read_environment(file, read_limits(arguments.limits));
-    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image)) {
-      return fail_about(arguments, read_error->missing ? kIo : kBadScene,
-                        "the scene's background: " + read_error->problem, {}, streams);
-    }
-    if (const auto& read = std::get<runtime::EnvironmentImage>(image); !read.warning.empty()) {
-      warn(streams, "the scene's background: " + read.warning);
-    }
-    cache.background_file = file;
-    cache.background = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
+    if (const auto code = cache_background(file, file, arguments, cache, streams)) return code;
   }
   options.environment = cache.background;
   return std::nullopt;
@@ -121,7 +112,7 @@ std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& inpu
   if (const auto code = override_scene(request, scene, streams)) return code;
   if (const auto code = check_memory(request, scene, streams)) return code;
   fit_regions(request, scene);
-  if (const auto code = read_background(scene.background, request.scene, cache, request.options, streams))
+  if (const auto code = find_background(scene.background, request.scene, cache, request.options, streams))
     return code;
   request.options.region_store = cache.regions;
   const std::uint64_t seed = scene.settings.seed;
@@ -135,6 +126,19 @@ std::optional<ExitCode> complete(PreparedRender& picture, const SceneInput& inpu
 }
 
 }  // namespace
+
+std::optional<ExitCode> cache_background(const std::string& file, const std::string& name,
+                                         const SceneArguments& arguments, RenderCache& cache,
+                                         const Streams& streams) {
+  auto read = runtime::read_background(file, read_limits(arguments.limits));
+  if (const auto* unread = std::get_if<runtime::ImageReadError>(&read)) {
+    return fail_about(arguments, unread->missing ? kIo : kBadScene, unread->problem, {}, streams);
+  }
+  cache.background_file = name;
+  cache.background = std::get<std::shared_ptr<const runtime::EnvironmentMap>>(std::move(read));
+  if (!cache.background->warning.empty()) warn(streams, cache.background->warning);
+  return std::nullopt;
+}
 
 std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,
                                                                        const SceneInput& input, RenderCache& cache,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,6 +29,10 @@ struct RenderCache {
   std::string messages;                                         // the compiler's last messages
   bool begun = false;  // a picture was drawn, so the notes common to all pictures have been printed
 };
+
+// Reads the environment map in `file`, which scenes call `name`. Returns an exit code after a message.
+std::optional<ExitCode> cache_background(const std::string& file, const std::string& name,
+                                         const SceneArguments& arguments, RenderCache& cache, const Streams& streams);
 
 // Returns the picture, or the exit code after a message.
 std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const RenderRequest& request,

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 
-#include "runtime/cli/input/memory.h"
 #include "runtime/cli/picture/render_identity.h"
 #include "runtime/cli/request/render_options.h"
-#include "runtime/light/environment_file.h"
 
 namespace fathom::cli {
 
@@ -19,14 +17,8 @@ std::optional<ExitCode> PlanFrames::open(const std::vector<std::string>& running
   request_.frames.all = false;
   request_.frames.range = plan_.grid.frames;
   if (!background.empty()) {
-    auto image = runtime::read_environment(background, read_limits(request_.scene.limits));
-    if (const auto* read_error = std::get_if<runtime::ImageReadError>(&image))
-      return fail(streams_, kIo, read_error->problem);
-    if (const auto& read = std::get<runtime::EnvironmentImage>(image); !read.warning.empty()) {
-      warn(streams_, read.warning);
-    }
-    cache_.background_file = plan_.background_name;
-    cache_.background = std::make_shared<runtime::EnvironmentMap>(std::get<runtime::EnvironmentImage>(image));
+    const auto code = cache_background(background, plan_.background_name, request_.scene, cache_, streams_);
+    if (code) return *code;
   }
   if (!plan_.grid.frames) return std::nullopt;
   const auto sequence = sequence_of(request_.frames, input_, request_.scene, streams_);

@@ -15,11 +15,12 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "runtime/image/color_space.h"
 #include "runtime/image/image_read.h"
-#include "runtime/light/environment_file.h"
+#include "runtime/light/environment_map.h"
 #include "tests/runtime/image/exr_files.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -402,9 +403,10 @@ TEST_CASE("exr kinds: NaN and infinity are named", "[image]") {
       };
     }
     write(folder.file("a.exr"), spec);
-    const auto read = read_environment(folder.file("a.exr"));
-    REQUIRE(std::holds_alternative<EnvironmentImage>(read));
-    const std::string& warning = std::get<EnvironmentImage>(read).warning;
+    const auto read = read_background(folder.file("a.exr"), {});
+    REQUIRE(std::holds_alternative<std::shared_ptr<const EnvironmentMap>>(read));
+    const std::string& warning = std::get<std::shared_ptr<const EnvironmentMap>>(read)->warning;
+    CHECK(warning.starts_with("the scene's background: `"));
     CHECK(warning.find("1 pixel with NaN and 8 pixels with infinity, the first in column 15 of row 0") !=
           std::string::npos);
   }
