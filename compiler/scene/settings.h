@@ -125,7 +125,7 @@ struct Setting {
 namespace setting_columns {
 
 constexpr SettingRange between(double least, double most) { return {least, most}; }
-inline constexpr SettingRange above_zero{.above_zero = true}, words{};
+inline constexpr SettingRange above_zero{.above_zero = true}, all_bits{}, words{};
 constexpr SettingOption option(OptionGroup group, std::string_view names, std::string_view placeholder,
                                std::string_view help, std::string_view hint = {}) {
   return {group, names, placeholder, help, hint};

@@ -69,6 +69,8 @@ Record read_settings_of(const RecordSpec& row, const syntax::Value& value, const
     if (reader.value(setting.name) == nullptr) return;
     if constexpr (std::is_enum_v<Number>) {
       record.*setting.member = static_cast<Number>(reader.choice(setting.name));
+    } else if constexpr (std::is_same_v<Number, std::uint64_t>) {
+      record.*setting.member = reader.seed(setting.name);
     } else {
       record.*setting.member = static_cast<Number>(reader.number(setting.name));
     }

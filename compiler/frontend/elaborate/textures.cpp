@@ -37,8 +37,7 @@ decltype(Pattern::kind) kind_of(const RecordReader& reader, std::string_view typ
   if (type == "gradient") return Pattern::Gradient{reader.vec3("from"), reader.vec3("to")};
   if (type == "noise") {
     return Pattern::Noise{static_cast<int>(reader.number("octaves")), reader.number("gain"),
-                          reader.number("lacunarity"), reader.number("contrast"),
-                          static_cast<std::uint64_t>(reader.number("seed"))};
+                          reader.number("lacunarity"), reader.number("contrast"), reader.seed("seed")};
   }
   if (type == "bricks") {
     return Pattern::Bricks{reader.number("width"), reader.number("height"), reader.number("mortar"),

@@ -37,9 +37,10 @@ bool is_short(const Value& value) {
 
 std::string print_short(const Value& value) {
   struct Printer {
+    const Value& value;
     std::string operator()(std::monostate) const { return "null"; }
     std::string operator()(bool b) const { return b ? "true" : "false"; }
-    std::string operator()(double number) const { return fmt::format("{}", number); }
+    std::string operator()(double) const { return number_text(value); }
     std::string operator()(const std::string& text) const { return in_quotes(text); }
     std::string operator()(const List& list) const {
       std::string out;
@@ -53,7 +54,7 @@ std::string print_short(const Value& value) {
       return "[" + out + "]";
     }
   };
-  return std::visit(Printer{}, value.data);
+  return std::visit(Printer{value}, value.data);
 }
 
 std::string print_name(std::string_view name) {

@@ -31,7 +31,7 @@ std::string scalar(const syntax::Value& value) {
   if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
   if (const auto* number = std::get_if<double>(&value.data)) {
     // Without the point, -0 would be read back as an integer, which has no sign.
-    return *number == 0 && std::signbit(*number) ? "-0.0" : fmt::format("{}", *number);
+    return *number == 0 && std::signbit(*number) ? "-0.0" : number_text(value);
   }
   if (const auto* text = std::get_if<std::string>(&value.data)) return quoted(*text);
   return "null";

@@ -128,7 +128,7 @@ const std::vector<RecordSpec>& pattern_records() {
                         number("gain", "strength of each octave against the one before", {0.5}, kUnit),
                         number("lacunarity", "fineness of each octave against the one before", {2}, {1, 16}),
                         number("contrast", "factor of the deviation from the middle", {1}, {0, 1000}),
-                        integer("seed", "another number, another noise", 0, {0, kLargestWhole})}),
+                        seed("seed", "another number, another noise")}),
       pattern("bricks", {number("width", "of a brick with its mortar", {1}, {}, Rule::Positive),
                          number("height", "of a brick with its mortar", {0.5}, {}, Rule::Positive),
                          number("mortar", "how wide it is; b", {0.05}, {}, Rule::NotNegative),

@@ -11,8 +11,6 @@
 namespace fathom::compiler::rows {
 
 inline constexpr Range kUnit{0, 1};
-// Largest whole number that no other is rounded to. JSON numbers are read as doubles.
-inline constexpr double kLargestWhole = 9007199254740991;  // 2^53 - 1
 
 inline PropertySpec number(std::string_view name, std::string_view doc, std::vector<double> fallback,
                            Range range = {}, Rule rule = Rule::Any) {
@@ -21,6 +19,7 @@ inline PropertySpec number(std::string_view name, std::string_view doc, std::vec
 inline PropertySpec integer(std::string_view name, std::string_view doc, double fallback, Range range) {
   return {name, ValueType::Integer, doc, {fallback}, false, Rule::Any, range, {}};
 }
+inline PropertySpec seed(std::string_view name, std::string_view doc) { return {name, ValueType::Seed, doc, {0}}; }
 inline PropertySpec vec3(std::string_view name, std::string_view doc, std::vector<double> fallback,
                          Rule rule = Rule::Any) {
   return {name, ValueType::Vec3, doc, std::move(fallback), false, rule, {}, {}};

@@ -22,6 +22,7 @@ std::string expected(ValueType type, const Diagnostics& diagnostics) {
     case ValueType::Version:
       return "a number";
     case ValueType::Integer:
+    case ValueType::Seed:
       return "a whole number";
     case ValueType::Vec2:
       return "two numbers [x, y]";
@@ -87,6 +88,7 @@ bool has_type(const Value& value, ValueType type) {
     case ValueType::Version:
       return number != nullptr;
     case ValueType::Integer:
+    case ValueType::Seed:
       return number != nullptr && (!std::isfinite(*number) || *number == std::floor(*number));
     case ValueType::Vec2:
       return is_pair(value);
@@ -139,6 +141,16 @@ std::string broken_rule(double number, const PropertySpec& spec, const Limits& l
   return fmt::format("between {} and {}", range.least, range.most);
 }
 
+// As broken_rule(), for a seed. A number that is not written in digits is a double, which may be a neighbour's from
+// 2^53 on.
+std::string broken_rule_of_seed(const Value& value) {
+  const double number = std::get<double>(value.data);
+  if (!std::isfinite(number)) return "finite";
+  if (value.integer != 0 || (number >= 0 && number < 0x1p53)) return "";
+  if (number > 0 && number < 0x1p64) return "below 2^53 or written in digits alone, as 18446744073709551615";
+  return "between 0 and 18446744073709551615";
+}
+
 struct ReadFailure {
   std::string rule;
   const Value* value;
@@ -147,7 +159,8 @@ struct ReadFailure {
 // Returns the first number of the value that breaks a rule of its property.
 std::optional<ReadFailure> first_broken(const Value& value, const PropertySpec& spec, const Limits& limits) {
   if (const double* number = std::get_if<double>(&value.data)) {
-    const std::string rule = broken_rule(*number, spec, limits);
+    const std::string rule =
+        spec.type == ValueType::Seed ? broken_rule_of_seed(value) : broken_rule(*number, spec, limits);
     return rule.empty() ? std::nullopt : std::optional(ReadFailure{rule, &value});
   }
   const auto* list = std::get_if<syntax::List>(&value.data);
@@ -179,7 +192,8 @@ std::vector<std::string> about(const PropertySpec& spec) { return {fmt::format("
 // Returns help for a value of the wrong type.
 std::vector<std::string> retype(const Value& value, const Value& written, const PropertySpec& spec) {
   const bool number = std::holds_alternative<double>(value.data);
-  if (spec.type == ValueType::Integer && number && std::holds_alternative<std::string>(written.data)) {
+  const bool whole = spec.type == ValueType::Integer || spec.type == ValueType::Seed;
+  if (whole && number && std::holds_alternative<std::string>(written.data)) {
     return {about(spec)[0], "round(...), floor(...) and ceil(...) make whole numbers"};
   }
   if (spec.type == ValueType::Rotation && number) {
@@ -349,6 +363,12 @@ std::vector<double> RecordReader::numbers(std::string_view name) const {
   append_numbers(*given, all);
   if (row->type == ValueType::Color && all.size() == 1) all.assign(3, all[0]);
   return all;
+}
+
+std::uint64_t RecordReader::seed(std::string_view name) const {
+  const Value* given = value(name);
+  if (given == nullptr) return 0;
+  return given->integer != 0 ? given->integer : static_cast<std::uint64_t>(std::get<double>(given->data));
 }
 
 std::size_t RecordReader::choice(std::string_view name) const {

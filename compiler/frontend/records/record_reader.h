@@ -38,6 +38,8 @@ class RecordReader {
   std::vector<double> numbers(std::string_view name) const;
   double number(std::string_view name) const { return numbers(name)[0]; }
   glm::dvec3 vec3(std::string_view name) const;
+  // Returns the given seed, or 0 if the value is absent or invalid.
+  std::uint64_t seed(std::string_view name) const;
   // Returns the index of the given word among the table's choices, or 0 if the value is absent or invalid.
   std::size_t choice(std::string_view name) const;
 

@@ -13,6 +13,7 @@ namespace fathom::compiler {
 enum class ValueType {
   Number,
   Integer,
+  Seed,     // an integer of 64 bits
   Vec2,     // two numbers
   Vec3,     // three numbers
   Points,   // a list of three or more [x, y]

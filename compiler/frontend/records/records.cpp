@@ -91,6 +91,7 @@ PropertySpec setting_property(const Setting<Record, Member>& setting) {
     property.choices.assign(words.begin(), words.end());
   } else {
     if (std::is_integral_v<Number>) property.type = ValueType::Integer;
+    if (std::is_same_v<Number, std::uint64_t>) property.type = ValueType::Seed;
     if constexpr (std::is_same_v<Member, Number>) property.fallback = {static_cast<double>(Record().*setting.member)};
     if (setting.range.above_zero) {
       property.rule = Rule::Positive;

@@ -66,6 +66,8 @@ OrderedJson value_schema(const PropertySpec& property, const RecordSpec& record)
       return number_schema(property);
     case ValueType::Integer:
       return number_schema(property, "integer");
+    case ValueType::Seed:
+      return either({{"type", "integer"}, {"minimum", 0}, {"maximum", ~std::uint64_t{0}}}, string_schema());
     case ValueType::Vec2:
       return list_schema(number_schema(property), 2, 2);
     case ValueType::Vec3:

@@ -15,8 +15,8 @@ namespace {
 using syntax::Value;
 
 bool may_be_number(ValueType type) {
-  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Scale ||
-         type == ValueType::Color || type == ValueType::Background;
+  return type == ValueType::Number || type == ValueType::Integer || type == ValueType::Seed ||
+         type == ValueType::Scale || type == ValueType::Color || type == ValueType::Background;
 }
 
 bool may_be_numbers(ValueType type) {
@@ -60,7 +60,8 @@ std::optional<Value> evaluated(const Value& value, const Scope& scope, Diagnosti
   const auto* list = std::get_if<syntax::List>(&value.data);
   if (list == nullptr) {
     const std::optional<double> number = read_number(value, scope, diagnostics, may_vary);
-    return number ? std::optional(Value{value.span, *number}) : std::nullopt;
+    const auto* text = std::get_if<std::string>(&value.data);
+    return number ? std::optional(Value{value.span, *number, text ? integer_of(*text) : 0}) : std::nullopt;
   }
   syntax::List numbers;
   for (const Value& item : *list) {

@@ -59,7 +59,7 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
   bool null() override { return scalar(std::monostate{}); }
   bool boolean(bool value) override { return scalar(value); }
   bool number_integer(number_integer_t value) override { return number(static_cast<double>(value)); }
-  bool number_unsigned(number_unsigned_t value) override { return number(static_cast<double>(value)); }
+  bool number_unsigned(number_unsigned_t value) override { return number(static_cast<double>(value), value); }
   bool number_float(number_float_t value, const string_t&) override { return number(value); }
   bool string(string_t& value) override {
     const Span span = token(taken_);
@@ -133,9 +133,9 @@ class Reader : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  bool number(double value) {
+  bool number(double value, std::uint64_t integer = 0) {
     const bool ended_by_text = taken_ < text_.size() || !in_number(text_.back());
-    put({token(taken_ - (ended_by_text ? 1 : 0)), value});
+    put({token(taken_ - (ended_by_text ? 1 : 0)), value, integer});
     return true;
   }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace fathom::compiler {
@@ -37,6 +38,19 @@ std::string describe(const syntax::Value& value) {
     std::string operator()(const syntax::ReadFormula&) const { return "a formula"; }
   };
   return std::visit(Describer{}, value.data);
+}
+
+std::uint64_t integer_of(std::string_view text) {
+  std::uint64_t integer = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
+  return error == std::errc() && end == text.data() + text.size() ? integer : 0;
+}
+
+std::string number_text(const syntax::Value& number) {
+  if (number.integer != 0) return fmt::format("{}", number.integer);
+  const double value = std::get<double>(number.data);
+  // A point tells a number that may be rounded from one that is written in digits. From 1e16 on an exponent does.
+  return std::abs(value) >= 0x1p53 && std::abs(value) < 1e16 ? fmt::format("{:#}", value) : fmt::format("{}", value);
 }
 
 std::optional<glm::dvec3> three_numbers(const syntax::Value& value) {

@@ -6,6 +6,7 @@
 // properties type, radius and translate; `{"use": "ball"}` has the property use.
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -43,6 +44,7 @@ using ReadFormula = std::shared_ptr<const Formula>;
 struct Value {
   Span span;
   std::variant<std::monostate, bool, double, std::string, List, Record, ReadFormula> data;  // monostate: null
+  std::uint64_t integer = 0;  // a number that is written in digits alone, which `data` may round; otherwise 0
 };
 
 // Whole file: one record with the properties camera, film, objects, ...
@@ -56,6 +58,12 @@ namespace fathom::compiler {
 
 // Describes a value in messages: "a number", "a string", "a list of 2", ...
 std::string describe(const syntax::Value& value);
+
+// Returns the integer that the text is, or 0 if the text is not digits alone or takes more than 64 bits.
+std::uint64_t integer_of(std::string_view text);
+
+// Prints a number with all of its digits. Digits alone are an `integer`, from 2^53 on.
+std::string number_text(const syntax::Value& number);
 
 // Returns the three numbers of a list, or a single number three times. Returns nullopt for any other value.
 std::optional<glm::dvec3> three_numbers(const syntax::Value& value);

@@ -222,7 +222,7 @@ class TextPrinter {
 
   std::string value_text(const SyntaxValue& value, bool is_text = false) {
     if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
-    if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+    if (std::holds_alternative<double>(value.data)) return number_text(value);
     if (const auto* text = std::get_if<std::string>(&value.data)) {
       return is_text || text->starts_with('#') ? quoted_text(*text) : formula_text(*text);
     }

@@ -58,6 +58,37 @@ TEST_CASE("cli: convert goes from JSON to text and back", "[cli]") {
   CHECK(folder.run("convert bad.fathom").code == 65);
 }
 
+// The digits of 2^53 + 1 and of 2^64 - 1 were lost, or the seeds refused.
+TEST_CASE("cli: convert and fmt keep all digits of seeds", "[cli]") {
+  const Folder folder;
+  const auto seed_in = [](const std::string& text) {
+    const std::size_t at = text.find_first_of("0123456789", text.find("seed"));
+    return text.substr(at, text.find_first_not_of("0123456789", at) - at);
+  };
+  for (const std::string seed : {"9007199254740993", "18446744073709551615"}) {
+    folder.write("a.json", R"({"version": 1, "render": {"seed": )" + seed +
+                               R"(}, "objects": [{"type": "sphere", "radius": 1}]})");
+    REQUIRE(folder.run("convert a.json -o a.fathom").code == 0);
+    CHECK(seed_in(folder.read("a.fathom")) == seed);
+    CHECK(seed_in(folder.run("convert a.fathom").out) == seed);
+    CHECK(seed_in(folder.run("fmt a.fathom").out) == seed);
+    CHECK(seed_in(folder.run("dump --stage syntax a.fathom").out) == seed);
+    folder.write("named.fathom", "fathom 1\nlet n = " + seed + "\nrender (seed = (n))\nobject sphere(1)\n");
+    CHECK(seed_in(folder.run("convert named.fathom").out) == seed);
+  }
+}
+
+// Materials that differ in nothing else were one material.
+TEST_CASE("cli: materials of two seeds stay two", "[cli]") {
+  const Folder folder;
+  folder.write("a.fathom",
+               "fathom 1\ndef cloud(n) = diffuse(color = noise(a = 0, b = 1, seed = n))\n"
+               "object sphere(1).material(cloud(9007199254740992))\n"
+               "object sphere(1).translate([2, 0, 0]).material(cloud(9007199254740993))\n");
+  const std::string json = folder.run("convert a.fathom").out;
+  CHECK_THAT(json, Contains("9007199254740992") && Contains("9007199254740993"));
+}
+
 // The first comment of a text, which speaks of the scene, was put among its parameters.
 TEST_CASE("cli: convert keeps comments on the whole file before everything", "[cli]") {
   const Folder folder;

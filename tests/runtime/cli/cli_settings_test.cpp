@@ -63,4 +63,28 @@ TEST_CASE("cli settings: an option and the scene's property change the film's ro
   CHECK(settings >= 10);
 }
 
+// The scene's seed was a double, so seeds from 2^53 on were refused or rounded.
+TEST_CASE("cli settings: seeds that differ in the last of 64 bits are two pictures, of either notation or the option",
+          "[cli]") {
+  const Folder folder;
+  folder.write("a.json", R"({"version": 1, "background": {"top": 1}, "objects": [{"type": "sphere", "radius": 1}]})");
+  const auto picture = [&](const std::string& scene, const std::string& seed) {
+    REQUIRE(folder.run("render " + scene + " -q -s 1 --size 24x16 -o a.png" + seed).code == 0);
+    return folder.read("a.png");
+  };
+  std::string before;
+  for (const std::string seed :
+       {"9007199254740992", "9007199254740993", "18446744073709551614", "18446744073709551615"}) {
+    CAPTURE(seed);
+    folder.write("seed.json", R"({"version": 1, "background": {"top": 1}, "render": {"seed": )" + seed +
+                                  R"(}, "objects": [{"type": "sphere", "radius": 1}]})");
+    folder.write("seed.fathom", "fathom 1\nbackground (top = 1)\nrender (seed = " + seed + ")\nobject sphere(1)\n");
+    REQUIRE(folder.run("compile seed.fathom -o seed.fbc").code == 0);
+    const std::string given = picture("a.json", " --seed " + seed);
+    for (const char* scene : {"seed.json", "seed.fathom", "seed.fbc"}) CHECK(picture(scene, "") == given);
+    CHECK(given != before);
+    before = given;
+  }
+}
+
 }  // namespace fathom::cli_settings_test

@@ -104,6 +104,10 @@ class Drawer {
       case ValueType::Number:
       case ValueType::Integer:
         return number(property.varies);
+      case ValueType::Seed: {
+        const std::uint64_t seed = random_.bits();
+        return Value{{}, static_cast<double>(seed), seed};
+      }
       case ValueType::Vec2:
         return numbers(2, false);
       case ValueType::Vec3:
@@ -290,7 +294,7 @@ std::string canonical(const compiler::syntax::Value& value) {
     if (const auto number = whole_number(out)) return fmt::format("{}", *number);
     return "'" + out + "'";
   }
-  if (const auto* number = std::get_if<double>(&value.data)) return fmt::format("{}", *number);
+  if (std::holds_alternative<double>(value.data)) return number_text(value);
   if (const auto* truth = std::get_if<bool>(&value.data)) return *truth ? "true" : "false";
   return "null";
 }

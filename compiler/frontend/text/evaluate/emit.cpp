@@ -360,12 +360,14 @@ class Emitter {
 
   syntax::Value to_value(const Value& value, Place place) {
     if (!has_room(value)) return {value.span, {}};
-    if (value.spelling && (!value.spelling->is_literal || place == Place::Formula)) return spelled(value, place);
+    // A formula such as "(9007199254740993)" would lose digits.
+    const bool literal = value.integer >= std::uint64_t{1} << 53 || (value.spelling && value.spelling->is_literal);
+    if (value.spelling && (!literal || place == Place::Formula)) return spelled(value, place);
     switch (value.type) {
       case Value::Type::Truth:
         return {value.span, value.truth};
       case Value::Type::Number:
-        if (place != Place::Formula) return {value.span, value.number};
+        if (place != Place::Formula) return {value.span, value.number, value.integer};
         return {value.span, std::make_shared<const Formula>(Formula{{{"const", value.number, {}, value.span}}})};
       case Value::Type::Formula:
         return {value.span, std::make_shared<const Formula>(evaluated_.store.formulas.finish(value.formula))};

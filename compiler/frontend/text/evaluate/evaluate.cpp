@@ -51,6 +51,7 @@ Value Evaluator::evaluate(const Expr& expr) {
     switch (expr.kind) {
       case Number: {
         Value value = number(expr.number, expr.span);
+        value.integer = integer_of(expr.name);
         spell_number(value, expr.name);
         return value;
       }

@@ -45,6 +45,7 @@ struct Value {
   Type type;
   Span span;
   const Spelling* spelling = nullptr;  // of a number, if kept
+  std::uint64_t integer = 0;           // of a number, as in syntax::Value
   union {
     bool truth = false;
     double number;

@@ -83,6 +83,26 @@ TEST_CASE("formulas stand wherever numbers do", "[frontend][elaborate]") {
             .camera.width == 6);
 }
 
+TEST_CASE("seeds have 64 bits, in JSON and as formulas", "[frontend][elaborate]") {
+  const auto seeds = [](const std::string& seed) {
+    const ElaboratedScene e =
+        of_objects(R"({"type": "sphere", "radius": 1, "material": "m"})",
+                   fmt::format(R"(, "render": {{"seed": {0}}}, "materials": {{"m": {{"type": "diffuse",
+            "color": {{"pattern": "noise", "a": 0, "b": 1, "seed": {0}}}}}}})",
+                               seed));
+    CHECK(std::get<Pattern::Noise>(std::get<Pattern>(e.textures.back()).kind).seed == e.settings.seed);
+    return e.settings.seed;
+  };
+  for (const std::uint64_t seed :
+       {std::uint64_t{0}, std::uint64_t{7}, (std::uint64_t{1} << 53) - 1, std::uint64_t{1} << 53,
+        (std::uint64_t{1} << 53) + 1, (std::uint64_t{1} << 63) + 1, ~std::uint64_t{0} - 1, ~std::uint64_t{0}}) {
+    CHECK(seeds(fmt::format("{}", seed)) == seed);
+    CHECK(seeds(fmt::format("\"{}\"", seed)) == seed);
+  }
+  CHECK(seeds("\"2^53 - 1\"") == (std::uint64_t{1} << 53) - 1);
+  CHECK(seeds("3.0") == 3);
+}
+
 TEST_CASE("parameters have values, bounds and defaults", "[frontend][elaborate]") {
   const std::string text = R"({"version": 1, "params": {
       "r": {"default": 0.5, "min": 0, "max": "2*2", "doc": "of the ball"},

@@ -142,7 +142,7 @@ TEST_CASE("schema: no change to a scene makes it disagree with the compiler", "[
   const json ball = {{"use", "ball"}, {"scale", 2}, {"name", "b"}};
   scene["objects"].push_back({{"type", "onion"}, {"thickness", 0.1}, {"of", ball}});
   scene["objects"].push_back({{"type", "smooth_union"}, {"k", 0.1}, {"of", {ball, ball}}, {"scale", {1, 2, 1}}});
-  const json others[] = {nullptr,       true,           0,         -1,         0.5,   2, 1e19, "diffuse", "sphere",
+  const json others[] = {nullptr,       true,           0,         -1,         0.5,   2, 1e20, "diffuse", "sphere",
                          json::array(), json::object(), {0, 0, 0}, {1, -1, 1}, {1, 2}};
   int changes = 0;
   for_each_value(scene, [&](json& value) {
@@ -199,6 +199,7 @@ TEST_CASE("schema: every property of the tables is described", "[frontend][schem
   });
   CHECK(schema()["$defs"]["material"]["oneOf"][3]["properties"]["ior"]["default"] == 1.5);
   CHECK(schema()["properties"]["version"]["const"] == 1);
+  CHECK(schema()["$defs"]["render"]["properties"]["seed"]["anyOf"][0]["maximum"] == ~std::uint64_t{0});
 }
 
 }  // namespace fathom::schema_test
