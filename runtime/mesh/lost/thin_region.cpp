@@ -17,6 +17,8 @@ constexpr double kSheetStep = 0.5;
 constexpr double kTaper = 0.8;  // a part thins out if it is thinner by this factor nearby
 // A tip, which has places of any thickness, has larger balls beside one. A neck is wider where it ends.
 constexpr double kLongGrowth = 1.3, kTornGrowth = 2.5;
+// The largest balls in a neck, in radii of its first ball.
+constexpr double kNeckGrowth = 16;
 // The walk over balls: its reach in cells, the length of steps and the least ball, in radii.
 constexpr double kReach = 2.5, kStepShare = 0.9, kLeastBall = 0.4;
 
@@ -94,14 +96,13 @@ ThinRegionSearch::Section ThinRegionSearch::thinnest(const ProbedPoint& from) {
   return best;
 }
 
-// Looks for the part at `target` and beside it. Returns false if it is not there.
-bool ThinRegionSearch::find_beside(const Section& from, glm::dvec3 target, Section& found) {
+// Looks for the part at `target` and beside it, up to `most` away. Returns false if it is not there.
+bool ThinRegionSearch::find_beside(const Section& from, glm::dvec3 target, double most, Section& found) {
   const ProbedPoint point = probe_.at(target);
   if (point.side == from.middle.side) {
     found = along(point, from.across);
     return true;
   }
-  const double most = kSheetStep * lattice_.cell;
   for (const double sign : {-1.0, 1.0}) {
     const double way = probe_.way_out(point, sign * from.across, most);
     if (way >= most) continue;
@@ -117,10 +118,11 @@ bool ThinRegionSearch::find_beside(const Section& from, glm::dvec3 target, Secti
 
 // True if the part ends in this direction, and does not go on or become wide.
 bool ThinRegionSearch::ends(const Section& from, glm::dvec3 direction, double& least) {
+  const double length = kSheetStep * lattice_.cell;
   Section at = from;
   for (int step = 0; step < kSheetSteps; ++step) {
     Section next;
-    if (!find_beside(at, at.middle.place + kSheetStep * lattice_.cell * direction, next)) return true;
+    if (!find_beside(at, at.middle.place + length * direction, length, next)) return true;
     if (next.middle.side != from.middle.side) return true;
     if (next.width > kOpenWidth * lattice_.cell) return false;
     least = std::min(least, next.width);
@@ -202,7 +204,7 @@ ThinRegionSearch::Walked ThinRegionSearch::explore(const ProbedPoint& from, bool
     const ProbedPoint point = queue.top();
     queue.pop();
     if (add_contacts(point, walked.labels)) {
-      if (!passes_corners) continue;
+      if (!passes_corners || point.radius > kNeckGrowth * from.radius) continue;
       const auto is_another = [&](std::uint32_t label) { return label != walked.labels.front(); };
       if (std::ranges::any_of(walked.labels, is_another)) break;
     }
@@ -267,7 +269,7 @@ std::optional<glm::dvec3> ThinRegionSearch::follow_gap(glm::dvec3 from, glm::dve
     for (const glm::dvec3& way : {u, -u, v, -v}) {
       const glm::dvec3 target = at.middle.place + step * way;
       Section next;
-      if (find_beside(at, target, next)) {
+      if (find_beside(at, target, step + at.width, next)) {
         if (next.middle.side == between.side && next.width < best.width) best = next;
       } else if (step < kNearStep * lattice_.cell) {
         return target;  // a gap that bends is met again by shorter steps
@@ -295,7 +297,12 @@ ThinRegion ThinRegionSearch::examine(const ThinPlace& thin, bool is_apart) {
   describe(section, region);
   // A thick part may have a thin neck, where it may be torn.
   Walked walked = explore(section.middle, thin.is_between_pieces);
-  const double growth = walked.largest / section.middle.radius;
+  double growth = walked.largest / section.middle.radius;
+  if (thin.is_between_pieces && walked.labels.size() < 2) {
+    // The middle may lie beyond the neck.
+    Walked near = explore(start, true);
+    if (near.labels.size() >= 2) walked = std::move(near), growth = walked.largest / start.radius;
+  }
   if (walked.labels.size() >= 2) {
     region.fate = ThinRegion::Fate::Torn;
     region.labels = std::move(walked.labels);

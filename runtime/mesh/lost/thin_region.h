@@ -1,10 +1,10 @@
 // A thin part of the solid, or a thin gap, as a lattice sees it.
 //
 // A walk over balls without a zero, the largest first, explores the part from one of its points, up to where corners
-// of the lattice are in sight: those are in the mesh. From a place between two pieces it goes on, up to corners of
-// both. If the corners are of two pieces of the mesh, the mesh is torn at that place. If the walk meets none, the
-// mesh has nothing of the part. A part that goes on in all directions of a plane is a sheet, and what lies on its two
-// sides is one in the mesh.
+// of the lattice are in sight: those are in the mesh. From a place between two pieces it goes on, in the neck there,
+// up to corners of both. If the corners are of two pieces of the mesh, the mesh is torn at that place. If the walk
+// meets none, the mesh has nothing of the part. A part that goes on in all directions of a plane is a sheet, and what
+// lies on its two sides is one in the mesh.
 // Tested by: tests/runtime/mesh/mesh_counts_test.cpp
 #pragma once
 
@@ -63,7 +63,7 @@ class ThinRegionSearch {
   bool is_thick(const ProbedPoint& point) const { return 2 * point.radius > kOpenWidth * lattice_.cell; }
   ProbedPoint middle_of(const ProbedPoint& from);
   Section thinnest(const ProbedPoint& from);
-  bool find_beside(const Section& from, glm::dvec3 target, Section& found);
+  bool find_beside(const Section& from, glm::dvec3 target, double most, Section& found);
   bool ends(const Section& from, glm::dvec3 direction, double& least);
   bool is_sheet(const Section& from, double& least);
   void describe(const Section& section, ThinRegion& region);
