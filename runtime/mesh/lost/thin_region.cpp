@@ -43,6 +43,13 @@ std::array<glm::dvec3, 2> frame_of(glm::dvec3 n) {
   return {u, glm::cross(n, u)};
 }
 
+// Unit vectors at a right angle to one, each beside its opposite.
+std::array<glm::dvec3, kSheetDirections> around_of(glm::dvec3 n) {
+  constexpr double kDiagonal = 0.70710678118654752;
+  const auto [u, v] = frame_of(n);
+  return {u, -u, v, -v, kDiagonal * (u + v), -kDiagonal * (u + v), kDiagonal * (u - v), -kDiagonal * (u - v)};
+}
+
 }  // namespace
 
 ThinRegionSearch::Section ThinRegionSearch::along(const ProbedPoint& from, glm::dvec3 direction) {
@@ -117,7 +124,7 @@ bool ThinRegionSearch::find_beside(const Section& from, glm::dvec3 target, doubl
 }
 
 // True if the part ends in this direction, and does not go on or become wide.
-bool ThinRegionSearch::ends(const Section& from, glm::dvec3 direction, double& least) {
+bool ThinRegionSearch::ends(const Section& from, glm::dvec3 direction, Widths& widths) {
   const double length = kSheetStep * lattice_.cell;
   Section at = from;
   for (int step = 0; step < kSheetSteps; ++step) {
@@ -125,18 +132,33 @@ bool ThinRegionSearch::ends(const Section& from, glm::dvec3 direction, double& l
     if (!find_beside(at, at.middle.place + length * direction, length, next)) return true;
     if (next.middle.side != from.middle.side) return true;
     if (next.width > kOpenWidth * lattice_.cell) return false;
-    least = std::min(least, next.width);
+    widths.most = std::max(widths.most, next.width);
+    widths.least = std::min(widths.least, next.width);
     at = next;
   }
   return false;
 }
 
 bool ThinRegionSearch::is_sheet(const Section& from, double& least) {
-  const auto [u, v] = frame_of(from.across);
-  constexpr double kDiagonal = 0.70710678118654752;
-  const std::array<glm::dvec3, kSheetDirections> around = {
-      u, -u, v, -v, kDiagonal * (u + v), -kDiagonal * (u + v), kDiagonal * (u - v), -kDiagonal * (u - v)};
-  return std::ranges::none_of(around, [&](glm::dvec3 direction) { return ends(from, direction, least); });
+  Widths widths{least, least};
+  const auto around = around_of(from.across);
+  const bool goes_on =
+      std::ranges::none_of(around, [&](glm::dvec3 direction) { return ends(from, direction, widths); });
+  least = widths.least;
+  return goes_on;
+}
+
+// True if the part becomes thinner or ends in one direction, and becomes wider in the opposite one.
+bool ThinRegionSearch::thins_out(const Section& from) {
+  const auto around = around_of(from.across);
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    Widths ahead{from.width, from.width}, behind = ahead;
+    const bool is_thinner = ends(from, around[i], ahead) || ahead.least < from.width;
+    if (!is_thinner) continue;
+    (void)ends(from, around[i ^ 1], behind);
+    if (ahead.least < kTaper * behind.most) return true;
+  }
+  return false;
 }
 
 // Adds the labels of the corners on the point's side that are in its ball, or in its sight at its cell. Returns true
@@ -306,10 +328,10 @@ ThinRegion ThinRegionSearch::examine(const ThinPlace& thin, bool is_apart) {
   if (walked.labels.size() >= 2) {
     region.fate = ThinRegion::Fate::Torn;
     region.labels = std::move(walked.labels);
-    region.tapers = growth > kTornGrowth;
+    region.tapers = growth > kTornGrowth || thins_out(section);
   } else if (is_thin && walked.labels.empty() && (walked.is_explored || walked.is_long || is_apart)) {
     region.fate = ThinRegion::Fate::Lost;
-    region.tapers = !walked.is_explored && (!walked.is_long || growth > kLongGrowth);
+    region.tapers = (!walked.is_explored && (!walked.is_long || growth > kLongGrowth)) || thins_out(section);
   }
   return region;
 }

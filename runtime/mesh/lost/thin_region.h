@@ -52,6 +52,9 @@ class ThinRegionSearch {
     glm::dvec3 across;  // unit vector
     double width;       // scene units
   };
+  struct Widths {
+    double least, most;  // of a part near a section
+  };
   struct Walked {
     std::vector<std::uint32_t> labels;  // ascending
     double largest = 0;                 // radius of the balls out of sight of corners, scene units
@@ -64,8 +67,9 @@ class ThinRegionSearch {
   ProbedPoint middle_of(const ProbedPoint& from);
   Section thinnest(const ProbedPoint& from);
   bool find_beside(const Section& from, glm::dvec3 target, double most, Section& found);
-  bool ends(const Section& from, glm::dvec3 direction, double& least);
+  bool ends(const Section& from, glm::dvec3 direction, Widths& widths);
   bool is_sheet(const Section& from, double& least);
+  bool thins_out(const Section& from);
   void describe(const Section& section, ThinRegion& region);
   bool find_sheet(const ThinPlace& thin, const Section& section, ThinRegion& region);
   Walked explore(const ProbedPoint& from, bool passes_corners);

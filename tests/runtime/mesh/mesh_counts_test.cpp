@@ -80,6 +80,18 @@ TEST_CASE("mesh counts: the named tolerance keeps what was lost", "[mesh]") {
   }
 }
 
+// `--tolerance 0.032 keeps it` was said of a needle, whose tip no tolerance keeps.
+TEST_CASE("mesh counts: no tolerance is named for tips and wedges", "[mesh]") {
+  for (const char* name : {"star", "wedge", "needle"}) {
+    for (const double resolution : {24.0, 48.0}) {
+      INFO(name << " at " << resolution);
+      const auto scene = test::compiled(std::string("fathom 1\n") + scene_named(name).objects + "\n");
+      const MeshResult result = meshed(scene, resolution, false);
+      CHECK(std::ranges::all_of(result.lost, [](const LostPart& part) { return part.tapers; }));
+    }
+  }
+}
+
 // Widths of a gap of 0.35 were called 0.57, 0.016 and 0.13, and a plate of 0.01 4.1e-05 thin.
 TEST_CASE("mesh counts: thicknesses of lost parts are right", "[mesh]") {
   const struct {
