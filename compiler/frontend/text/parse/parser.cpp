@@ -64,11 +64,19 @@ class StatementParser : public ExpressionParser {
     }
   }
 
+  // Returns how to write what other languages write with `=` or braces after a statement's first word.
+  static std::vector<std::string> help_with_rest(std::string_view word, const Token& rest) {
+    if (!rest.is("=") && !rest.is("{")) return {};
+    if (word != "object") return {fmt::format("properties are in parentheses: {}(name = value)", word)};
+    if (rest.is("{")) return {"operands are in parentheses: object union(a, b)"};
+    return {"`let` gives a value a name; the name of an object is a text without `=`: object \"ball\" sphere(1)"};
+  }
+
   // Reports tokens after the end of a statement.
   void report_rest(const Token& first) {
     const Token& rest = tokens_[at_];
     if (!rest.first_on_line || rest.column > column_) {
-      unexpected("the statement ends before it");
+      unexpected("the statement ends before it", help_with_rest(first.text, rest));
       return;
     }
     diagnostics_.error("E0812", rest.span, fmt::format("a line that begins with `{}` and is not indented", rest.text),
@@ -101,8 +109,13 @@ class StatementParser : public ExpressionParser {
                           first.is_word("for") ? "for i in 0..3" : "if n > 1")};
     } else if (first.kind == Token::Kind::Name && peek().is("=")) {
       help = {fmt::format("a name is given by `let {} = ...`", first.text)};
-    } else if (first.kind == Token::Kind::Name && peek().is("(") && suggest(first.text, words).empty()) {
+    } else if (suggest(first.text, words).empty() && peek().kind == Token::Kind::Name && tokens_[at_ + 1].is("=")) {
+      help = {fmt::format("a name is given by `let {} = ...`", peek().text)};
+    } else if (first.kind == Token::Kind::Name && suggest(first.text, words).empty() &&
+               (peek().is("(") || find_word(first.text))) {
       help = {fmt::format("what is to be seen is an object: `object {}(...)`", first.text)};
+    } else if (first.kind == Token::Kind::Name && peek().is(".")) {
+      help = {fmt::format("what is to be seen is an object: `object {}...`", first.text)};
     } else {
       help = {did_you_mean(first.text, words)};
     }
@@ -164,6 +177,10 @@ class StatementParser : public ExpressionParser {
     if (labelled) {
       label(out);
       out.is_spread = take_if("...");
+    }
+    if (peek().is("=") || peek().is("{")) {
+      unexpected("a value is missing", help_with_rest(kStatementWords[static_cast<std::size_t>(out.kind)], peek()));
+      return false;
     }
     return (out.value = expression()) != nullptr;
   }
