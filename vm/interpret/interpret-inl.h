@@ -75,6 +75,12 @@ HWY_INLINE C immediate(const Code& program, std::size_t word, C*) {
   return C::broadcast(program.doubles[word]);
 }
 
+// Loads the constants in row `row` of a table [immediate][lane] whose rows are `stride` apart.
+template <class C>
+HWY_INLINE C constant_at(const float* table, std::size_t row, std::size_t stride, C*) {
+  return C::load(table + row * stride);
+}
+
 // Groups of immediates of an Outline instruction; the first is at `word`. Immediates are converted to constants on
 // access, because the number of groups has no bound.
 template <class C, int kSize>
@@ -122,10 +128,16 @@ class Interpreter {
     locals_ = values_ + program_.max_values * kBlock;
     spares_ = locals_ + program_.locals * kBlock;
     table_ = reinterpret_cast<float*>(memory + point_bytes + value_bytes);
+    immediates_ = table_;
   }
 
   Place* first_point() { return points_; }
   float* immediate_table() { return table_; }
+  // Takes the immediates from `table`, whose rows are `stride` floats apart, instead of immediate_table().
+  void read_immediates(const float* table, std::size_t stride) {
+    immediates_ = table;
+    stride_ = stride;
+  }
   const T* result() const { return values_; }
   ChoiceObserver<T>& observer() { return observer_; }
   const TagObserver<T>& tags() const { return tags_; }
@@ -210,7 +222,8 @@ class Interpreter {
     Immediates<Count> result;
     for (int i = 0; i < Count; ++i) {
       if constexpr (kFrom == Immediate::PerLane) {
-        result.k[i] = C::load(table_ + (c.in_table + static_cast<std::size_t>(i)) * kLanes);
+        result.k[i] =
+            constant_at(immediates_, c.in_table + static_cast<std::size_t>(i), stride_, static_cast<C*>(nullptr));
       } else {
         result.k[i] = immediate(program_, c.at + static_cast<std::size_t>(i), static_cast<C*>(nullptr));
       }
@@ -239,7 +252,7 @@ class Interpreter {
   }
   template <class Op, int Count>
   HWY_INLINE void apply_shape(Cursor& c) {
-    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox) {
+    if constexpr (kFrom == Immediate::PerLane && Op::kOpcode == Opcode::RoundBox && std::is_same_v<T, Batch>) {
       if (operand_of(program_.words[c.at - 1]) & kPolymorphic) return apply_polymorphic<Count>(c);
     }
     const std::uint32_t modes = operand_of(program_.words[c.at - 1]);
@@ -266,7 +279,8 @@ class Interpreter {
     const Place from = modes & kPlaced ? AffineOp::apply(*c.point, take<count_Affine>(c).k) : *c.point;
     const auto by = take<3>(c);
     const auto immediates = take<Count>(c);
-    const T value = any_shape(TranslateOp::apply(from, by.k), immediates.k, C::load(table_ + c.in_table * kLanes));
+    const T value =
+        any_shape(TranslateOp::apply(from, by.k), immediates.k, C::load(immediates_ + c.in_table * stride_));
     if (!joined) c.top += kBlock;
     *c.top = joined ? MinOp::apply(*c.top, value, immediates.k) : value;
   }
@@ -367,6 +381,8 @@ class Interpreter {
   T* locals_;
   T* spares_;
   float* table_;
+  const float* immediates_;  // the table that is read
+  std::size_t stride_ = kLanes;
   [[no_unique_address]] ChoiceObserver<T> observer_;
   [[no_unique_address]] TagObserver<T> tags_;
 };

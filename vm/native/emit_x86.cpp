@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "vm/native/register_file.h"
+#include "vm/prune/program_template.h"
 
 namespace fathom::vm {
 namespace {
@@ -68,7 +69,7 @@ class Emitter {
 
  private:
   static constexpr x86::Gp kInputs[3] = {x86::rsi, x86::rdx, x86::rcx};
-  static constexpr x86::Gp kConstants = x86::r8, kOffset = x86::r9, kEnd = x86::r10;
+  static constexpr x86::Gp kConstants = x86::r8, kOffset = x86::r9, kEnd = x86::r10, kRow = x86::r11;
   static constexpr int kNotShort = 4096;  // so that the frame's size always takes four bytes of code
 
   std::size_t width() const { return wide_ ? 64 : 32; }
@@ -88,6 +89,7 @@ class Emitter {
     for (int axis = 0; axis < 3; ++axis) load_pointer(kInputs[axis], offsetof(NativeArguments, inputs) + axis * 8u);
     load_pointer(kConstants, offsetof(NativeArguments, constants));
     load_pointer(kEnd, offsetof(NativeArguments, bytes));
+    load_pointer(kRow, offsetof(NativeArguments, row));
     a_.xor_(x86::r9d, x86::r9d);
     return frame;
   }
@@ -120,8 +122,12 @@ class Emitter {
     if (file_.register_of(node) != RegisterFile::kNone) return reg(file_.register_of(node));
     const OperationNode& value = graph_.nodes[node];
     if (value.kind == OperationNode::Kind::Constant) return constant(value.constant);
-    if (value.kind == OperationNode::Kind::Input) return x86::ptr(kInputs[value.operands[0]], kOffset);
+    if (value.kind == OperationNode::Kind::Input) return input(value.operands[0]);
     return slot(file_.slot_of(node));
+  }
+  static Operand input(std::uint32_t number) {
+    if (number < 3) return x86::ptr(kInputs[number], kOffset);
+    return x86::ptr(kRow, kOffset, 0, static_cast<int>((number - 3) * kRowStride * sizeof(float)));
   }
   Operand slot(int index) const { return x86::ptr(x86::rsp, index * static_cast<int>(width())); }
   bool in_register(std::uint32_t node) const { return file_.register_of(node) != RegisterFile::kNone; }
@@ -153,9 +159,9 @@ class Emitter {
 
   void operation(const OperationNode& node) {
     reads_ = RegisterFile::reads_of(graph_, at_);
-    // Inputs are read often, so they are worth a register.
+    // Coordinates are read often, so they are worth a register.
     for (const std::uint32_t read : reads_) {
-      if (graph_.nodes[read].kind == OperationNode::Kind::Input) loaded(read);
+      if (graph_.nodes[read].kind == OperationNode::Kind::Input && graph_.nodes[read].operands[0] < 3) loaded(read);
     }
     switch (node.operation) {
       case Operation::Add:

@@ -17,6 +17,7 @@ struct NativeArguments {
   const float* constants;
   std::size_t bytes;  // of one array
   float* results[6];
+  const float* row;  // [constant][lane], rows kRowStride apart (vm/prune/program_template.h)
 };
 using NativeFunction = void (*)(const NativeArguments*);
 

@@ -29,8 +29,7 @@ constexpr std::uint32_t kSurfaceCost = 6;
 // True if an instruction has an integer immediate, its number of iterations.
 bool iterates(const Program& program) {
   for (std::size_t at = 0; at < program.words.size(); at += 1 + immediates_of(program.words[at])) {
-    if (info(static_cast<Opcode>(program.words[at] & 0xff)).immediate_names.find(':') != std::string_view::npos)
-      return true;
+    if (row_of(program.words[at]).has_integers) return true;
   }
   return false;
 }
@@ -49,10 +48,20 @@ std::vector<NativeIsa> NativeProgram::available() {
 
 std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram& program, RecordedResults results,
                                                             NativeIsa isa) {
-  namespace memory = asmjit::VirtMem;
   const std::uint32_t max_cost = results == RecordedResults::Surface ? kMaxCost / kSurfaceCost : kMaxCost;
   if (program.cost() > max_cost || iterates(program.program())) return nullptr;
-  const auto graph = make_operation_graph(record_program(program, results), kMaxOperations);
+  return emit(record_program(program, results), isa);
+}
+
+std::shared_ptr<const NativeProgram> NativeProgram::compile_rows(const ProgramTemplate& program_template) {
+  const std::vector<NativeIsa> isas = available();
+  if (isas.empty() || program_template.words.size() > kMaxCost || program_template.iterates) return nullptr;
+  return emit(record_program(program_template, RecordedResults::DistanceOfRow), isas.front());
+}
+
+std::shared_ptr<const NativeProgram> NativeProgram::emit(const RecordedFunction& function, NativeIsa isa) {
+  namespace memory = asmjit::VirtMem;
+  const auto graph = make_operation_graph(function, kMaxOperations);
   if (!graph) return nullptr;
   NativeCode code = emit_x86(*graph, isa);
   if (code.bytes.empty()) return nullptr;
@@ -79,7 +88,7 @@ NativeProgram::~NativeProgram() {
 void NativeProgram::run(Points points, std::size_t count, std::array<float*, kMaxResults> results) const {
   const auto code = reinterpret_cast<NativeFunction>(code_);
   const std::size_t whole = count / lanes_ * lanes_, rest = count - whole;
-  NativeArguments arguments{{points.x, points.y, points.z}, constants_.data(), whole * sizeof(float), {}};
+  NativeArguments arguments{{points.x, points.y, points.z}, constants_.data(), whole * sizeof(float), {}, nullptr};
   std::copy(results.begin(), results.end(), arguments.results);
   if (whole > 0) code(&arguments);
   if (rest == 0) return;
@@ -100,6 +109,13 @@ void NativeProgram::evaluate(Points points, std::size_t count, float* distance, 
   run(points, count, {distance, convex});
 }
 
+void NativeProgram::evaluate_rows(Points points, std::size_t count, const float* constants, float* distance) const {
+  const std::size_t whole = (count + lanes_ - 1) / lanes_ * lanes_;
+  const NativeArguments arguments{
+      {points.x, points.y, points.z}, constants_.data(), whole * sizeof(float), {distance}, constants};
+  reinterpret_cast<NativeFunction>(code_)(&arguments);
+}
+
 void NativeProgram::evaluate_surface(Points points, std::size_t count, SurfaceValues out) const {
   constexpr std::size_t kBlock = 256;
   alignas(64) float surfaces[kBlock], convex[kBlock];
@@ -116,6 +132,8 @@ void NativeProgram::evaluate_surface(Points points, std::size_t count, SurfaceVa
 #else
 
 std::vector<NativeIsa> NativeProgram::available() { return {}; }
+std::shared_ptr<const NativeProgram> NativeProgram::compile_rows(const ProgramTemplate&) { return nullptr; }
+void NativeProgram::evaluate_rows(Points, std::size_t, const float*, float*) const {}
 std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgram&, RecordedResults, NativeIsa) {
   return nullptr;
 }

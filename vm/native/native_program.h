@@ -16,6 +16,7 @@
 #include "vm/interpret/evaluate.h"
 #include "vm/native/native_isa.h"
 #include "vm/program/verify.h"
+#include "vm/prune/program_template.h"
 #include "vm/record/record_program.h"
 
 namespace fathom::vm {
@@ -29,6 +30,8 @@ class NativeProgram {
   // available().
   static std::shared_ptr<const NativeProgram> compile(const VerifiedProgram& program, RecordedResults results,
                                                       NativeIsa isa);
+  // The same of a template's distance, for evaluate_rows() and the best available instruction set.
+  static std::shared_ptr<const NativeProgram> compile_rows(const ProgramTemplate& program_template);
   // The same for the best available instruction set; null if there is none.
   static std::shared_ptr<const NativeProgram> compile(const VerifiedProgram& program, RecordedResults results);
 
@@ -39,6 +42,8 @@ class NativeProgram {
   // Computes distance[i], and convex[i] if the program was compiled for it, as evaluate_distance() and
   // evaluate_convex() do. Thread safe, as all evaluation.
   void evaluate(Points points, std::size_t count, float* distance, float* convex = nullptr) const;
+  // Computes what vm::evaluate_rows() does (vm/prune/program_template.h), by code of compile_rows().
+  void evaluate_rows(Points points, std::size_t count, const float* constants, float* distance) const;
   // Computes what evaluate_surface() does, by a program compiled for RecordedResults::Surface.
   void evaluate_surface(Points points, std::size_t count, SurfaceValues out) const;
 
@@ -48,6 +53,7 @@ class NativeProgram {
   static constexpr std::size_t kMaxResults = 6;
 
   NativeProgram() = default;
+  static std::shared_ptr<const NativeProgram> emit(const RecordedFunction& function, NativeIsa isa);
   void run(Points points, std::size_t count, std::array<float*, kMaxResults> results) const;
 
   std::vector<float> constants_;

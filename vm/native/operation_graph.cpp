@@ -1,5 +1,6 @@
 #include "vm/native/operation_graph.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -221,11 +222,23 @@ OperationGraph without_unused(const OperationGraph& graph) {
   return result;
 }
 
+// Returns the number of the function's parameters, at least the coordinates.
+std::uint32_t parameters_of(const RecordedFunction& function) {
+  std::uint32_t count = 3;
+  const auto see = [&](const Ref& ref) {
+    if (ref.kind == Ref::Kind::Parameter) count = std::max(count, ref.index + 1);
+  };
+  for (const Statement& statement : function.statements) std::ranges::for_each(statement.operands, see);
+  std::ranges::for_each(function.results, see);
+  return count;
+}
+
 }  // namespace
 
 std::optional<OperationGraph> make_operation_graph(const RecordedFunction& function, std::size_t max_nodes) {
   Builder builder(max_nodes);
-  const std::vector<std::uint32_t> inputs = {builder.input(0), builder.input(1), builder.input(2)};
+  std::vector<std::uint32_t> inputs;
+  for (std::uint32_t i = 0; i < parameters_of(function); ++i) inputs.push_back(builder.input(i));
   std::vector<std::uint32_t> results = builder.append(function, inputs);
   if (builder.failed()) return std::nullopt;
   return without_unused(builder.take(std::move(results)));

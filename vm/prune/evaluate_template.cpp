@@ -13,6 +13,8 @@ HWY_BEFORE_NAMESPACE();
 namespace fathom::vm::HWY_NAMESPACE {
 void skeleton_batch(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
                     std::span<const TemplateJob> jobs, float* distance, Workspace& workspace);
+void row_batch(const ProgramTemplate& program_template, const Points& points, std::size_t count,
+               const float* constants, float* distance, Workspace& workspace);
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -189,6 +191,18 @@ void skeleton_batch(const ProgramTemplate& program_template, const Constants& co
   }
 }
 
+void row_batch(const ProgramTemplate& program_template, const Points& points, std::size_t count,
+               const float* constants, float* distance, Workspace& workspace) {
+  Interpreter<Batch, Immediate::PerLane> machine(program_template, workspace, 1);
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    machine.read_immediates(constants + first, kRowStride);
+    *machine.first_point() = {Batch::load(points.x + first), Batch::load(points.y + first),
+                              Batch::load(points.z + first)};
+    machine.interpret();
+    machine.result()->store(distance + first);
+  }
+}
+
 }  // namespace fathom::vm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
@@ -197,10 +211,16 @@ HWY_AFTER_NAMESPACE();
 namespace fathom::vm {
 
 HWY_EXPORT(skeleton_batch);
+HWY_EXPORT(row_batch);
 
 void evaluate_template(const ProgramTemplate& program_template, const Constants& constants, const std::uint32_t* pool,
                        std::span<const TemplateJob> jobs, float* distance, Workspace& workspace) {
   HWY_DYNAMIC_DISPATCH(skeleton_batch)(program_template, constants, pool, jobs, distance, workspace);
+}
+
+void evaluate_rows(const ProgramTemplate& program_template, Points points, std::size_t count, const float* constants,
+                   float* distance, Workspace& workspace) {
+  HWY_DYNAMIC_DISPATCH(row_batch)(program_template, points, count, constants, distance, workspace);
 }
 
 }  // namespace fathom::vm

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <numeric>
 
 #include "vm/program/opcode_rows.h"
 
@@ -104,8 +105,9 @@ std::size_t kept_immediates(std::uint32_t word) {
 }
 
 // Appends an instruction with the part's kept immediates. Floats among them are 0, except in outlines.
-void append_instruction(const PrunedProgram& part, std::uint32_t word, std::size_t at,
-                        std::vector<std::uint32_t>& words, std::vector<double>& doubles) {
+template <class Part>
+void append_instruction(const Part& part, std::uint32_t word, std::size_t at, std::vector<std::uint32_t>& words,
+                        std::vector<double>& doubles) {
   words.push_back(word), doubles.push_back(0);
   if (kept_immediates(word) == 0) return;
   const std::size_t first = at + 1 + static_cast<std::size_t>(leading_immediates(part.words[at]));
@@ -157,6 +159,35 @@ std::size_t bytes_of(const Item& item) {
 }
 
 }  // namespace
+
+ProgramTemplate template_of(const VerifiedProgram& program) {
+  const Code code = program;
+  ProgramTemplate result{{}, {}, code.locals, code.max_values, code.max_points, code.choices, program.instructions(),
+                         {}};
+  for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
+    const std::uint32_t word = code.words[at];
+    append_instruction(code, word, at, result.words, result.doubles);
+    result.iterates = result.iterates || row_of(word).has_integers;
+    const std::size_t immediates = is_outline(word) ? 0 : immediates_of(word);
+    if (immediates > 0) result.quads.push_back(static_cast<std::uint8_t>((immediates + kQuad - 1) / kQuad));
+  }
+  return result;
+}
+
+std::size_t constants_in(const ProgramTemplate& program_template) {
+  const auto& quads = program_template.quads;
+  return kQuad * std::accumulate(quads.begin(), quads.end(), std::size_t{0});
+}
+
+std::vector<float> constants_of(const Code& program) {
+  std::vector<float> row;
+  for (std::size_t at = 0; at < program.size; at += instruction_length(program.words[at])) {
+    const std::size_t immediates = is_outline(program.words[at]) ? 0 : immediates_of(program.words[at]);
+    for (std::size_t i = 0; i < immediates; ++i) row.push_back(std::bit_cast<float>(program.words[at + 1 + i]));
+    row.resize((row.size() + kQuad - 1) / kQuad * kQuad, 0.0f);
+  }
+  return row;
+}
 
 Constants::Constants(const Code& whole) : row_at_(whole.size, 0) {
   bool spheres = false, boxes = false, after_map = false;

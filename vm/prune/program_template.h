@@ -24,6 +24,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "vm/interpret/points.h"
 #include "vm/interpret/workspace.h"
 #include "vm/prune/specialise.h"
 
@@ -86,11 +87,30 @@ struct ProgramTemplate {
   std::vector<double> doubles;       // [word] constants of outlines, which belong to the template; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
   std::vector<std::uint8_t> quads;  // number of quads of each row of constants, in the order of the instructions
+  bool iterates = false;            // an instruction has a number of iterations; only of template_of()
 
   operator Code() const {
     return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices};
   }
+  // True if the other template has the same code.
+  bool operator==(const ProgramTemplate& other) const { return words == other.words && doubles == other.doubles; }
 };
+
+// Returns the template of a whole program without tags. Programs that differ in nothing but constants have one
+// template.
+ProgramTemplate template_of(const VerifiedProgram& program);
+// Returns the number of constants of a row, and the constants of a program for its template, one row: each
+// instruction's begin at a multiple of kQuad.
+std::size_t constants_in(const ProgramTemplate& program_template);
+std::vector<float> constants_of(const Code& program);
+
+// Distance between the constants' rows of evaluate_rows(), in floats: a cache line more than the lanes, because rows
+// a power of two apart would compete for the same few cache lines.
+inline constexpr std::size_t kMaxRowLanes = 768, kRowStride = kMaxRowLanes + 16;
+// Computes the distance of each point, at most kMaxRowLanes of them, by the template with the point's own constants:
+// [constant][point]. All arrays are read and written in whole registers.
+void evaluate_rows(const ProgramTemplate& program_template, Points points, std::size_t count, const float* constants,
+                   float* distance, Workspace& workspace);
 
 // Templates and remainders of many pruned programs. A part in a pool consists of its template's number, its
 // remainder's number, the rows of constants of the template's instructions that have constants (two of a placed

@@ -25,10 +25,10 @@ std::vector<Ref> refs(const RecordedSurface& value) {
           value.surface.ref};
 }
 
-template <class T>
+template <class T, Immediate kFrom = Immediate::Program>
 std::vector<Ref> run_program(const Code& program) {
   Workspace workspace;
-  Interpreter<T> machine(program, workspace, 1);
+  Interpreter<T, kFrom> machine(program, workspace, 1);
   set_point(*machine.first_point(), RecordedFloat::parameter(0), RecordedFloat::parameter(1),
             RecordedFloat::parameter(2));
   machine.interpret();
@@ -49,6 +49,9 @@ RecordedFunction record_function(const Code& program, RecordedResults results) {
       break;
     case RecordedResults::Surface:
       function.results = run_program<RecordedSurface>(program);
+      break;
+    case RecordedResults::DistanceOfRow:
+      function.results = run_program<RecordedFloat, Immediate::PerLane>(program);
       break;
   }
   return function;

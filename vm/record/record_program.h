@@ -11,11 +11,12 @@ namespace fathom::vm {
 enum class RecordedResults {
   Distance,
   DistanceAndConvexity,  // and the convexity radius (vm/number/convexity-inl.h)
+  DistanceOfRow,         // distance of a template (vm/prune/program_template.h); its constants are parameters, too
   Surface,  // distance, gradient x, y, z, convexity radius, surface: its number, or below 0 if no tag gave one
 };
 
-// Records the f32 evaluation of `program`. The parameters are x, y and z; immediates are numbers of the function. A
-// loop is recorded with all its passes.
+// Records the f32 evaluation of `program`. The parameters are x, y and z, and of a template the constants of
+// a row; other immediates are numbers of the function. A loop is recorded with all its passes.
 RecordedFunction record_program(const Code& program, RecordedResults results);
 
 }  // namespace fathom::vm

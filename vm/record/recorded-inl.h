@@ -47,6 +47,12 @@ struct RecordedMask {
   Ref ref;
 };
 
+// An immediate that differs per lane is a parameter after the coordinates.
+template <class Like>
+Recorded<Like> constant_at(const float*, std::size_t row, std::size_t, Recorded<Like>*) {
+  return Recorded<Like>::parameter(3 + row);
+}
+
 template <class Like>
 struct Precision<Recorded<Like>> : Precision<Like> {};
 

@@ -1,6 +1,8 @@
-// Native code has the interpreter's bits, for every opcode and for random programs.
+// Native code has the interpreter's bits, for every opcode and for random programs, and so have templates with a row
+// of constants in every lane.
 #include "vm/native/native_program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,6 +15,7 @@
 #include "tests/vm/number/float_bits.h"
 #include "vm/encoding/disassemble.h"
 #include "vm/interpret/evaluate.h"
+#include "vm/prune/program_template.h"
 
 namespace fathom::test::native_program_test {
 namespace {
@@ -38,6 +41,28 @@ Cloud nasty_cloud(std::size_t count, Random& random) {
   return cloud;
 }
 
+// Compares the program's template, with the program's constants in every lane, with the program itself.
+void compare_rows(const vm::VerifiedProgram& program, const Cloud& cloud, const std::vector<float>& expected) {
+  constexpr std::size_t kCount = 192;  // a whole number of registers
+  const vm::ProgramTemplate code = vm::template_of(program);
+  const std::vector<float> row = vm::constants_of(program);
+  REQUIRE(row.size() == vm::constants_in(code));
+  std::vector<float> constants(row.size() * vm::kRowStride), distance(kCount);
+  for (std::size_t k = 0; k < row.size(); ++k) std::fill_n(&constants[k * vm::kRowStride], kCount, row[k]);
+  const auto differences = [&] {
+    int different = 0;
+    for (std::size_t i = 0; i < kCount; ++i) different += bits_of(distance[i]) != bits_of(expected[i]);
+    return different;
+  };
+  vm::Workspace workspace;
+  vm::evaluate_rows(code, cloud.from(0), kCount, constants.data(), distance.data(), workspace);
+  CHECK(differences() == 0);
+  const auto native = NativeProgram::compile_rows(code);
+  if (!native) return;
+  native->evaluate_rows(cloud.from(0), kCount, constants.data(), distance.data());
+  CHECK(differences() == 0);
+}
+
 // Compares the native code of a program with the interpreter. Returns false if the program has no native code.
 bool compare(const vm::VerifiedProgram& program, NativeIsa isa, Random& random) {
   constexpr std::size_t kCount = 205;  // not a whole number of registers
@@ -59,6 +84,7 @@ bool compare(const vm::VerifiedProgram& program, NativeIsa isa, Random& random) 
   both->evaluate(cloud.from(0), kCount, distance.data(), convex.data());
   CHECK(differences(distance, expected) == 0);
   CHECK(differences(convex, expected_convex) == 0);
+  if (isa == NativeProgram::available().front()) compare_rows(program, cloud, expected);
 
   const auto surface = NativeProgram::compile(program, RecordedResults::Surface, isa);
   if (!surface) return true;  // several times as long as the distance alone
