@@ -26,6 +26,7 @@
 #include "compiler/lower/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/signs.h"
+#include "compiler/passes/split.h"
 #include "compiler/scene/framing.h"
 #include "compiler/shapes/blends.h"
 #include "compiler/shapes/bounds.h"
@@ -154,8 +155,8 @@ bool needs_tags(std::span<const Surface> surfaces) {
   return surfaces.size() > 1 || std::any_of(surfaces.begin(), surfaces.end(), std::mem_fn(&Surface::placed));
 }
 
-// `optimised` is `scene` after the passes, without Paint, and `known` are its facts. `painted` is true if the surface
-// program needs tags.
+// `scene` and `optimised` are the scene after the passes, with and without Paint, and `known` are the latter's facts.
+// `painted` is true if the surface program needs tags.
 std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised,
                                            const std::vector<NodeFacts>& known, bool painted, const Source& source,
                                            Diagnostics& diagnostics, const CompileOptions& options) {
@@ -163,8 +164,7 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
   std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
   if (!distance) return std::nullopt;
   std::optional<vm::VerifiedProgram> surface = distance;
-  if (painted)
-    surface = assemble(optimise(scene, true, options, nullptr), source, fused, options.limits, diagnostics);
+  if (painted) surface = assemble(scene, source, fused, options.limits, diagnostics);
   if (!surface) return std::nullopt;
   const NodeFacts& all = known[optimised.root];
   const FormulaCells cells =
@@ -173,6 +173,32 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       std::move(*distance), std::move(*surface), all.box,       contents(optimised.graph, optimised.root, known),
       all.lipschitz,        cells.cancellation,  all.certified, cells.box,
       cells.rest_lipschitz};
+}
+
+// Compiles the pieces of a scene: `optimised` is the scene after the passes, with Paint.
+std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised, bool painted, const Source& source,
+                                                         Diagnostics& diagnostics, const CompileOptions& options) {
+  Pieces parts = split(optimised);
+  Scene all{std::move(parts.graph), 0};
+  const bool single = parts.nodes.size() == 1;
+  all.root = single ? parts.nodes[0] : all.graph.add(Kind::Union, {}, parts.nodes);
+  const auto pieces_of = [&](const Scene& scene) {
+    const auto children = scene.graph.children(scene.root);
+    return single ? std::vector{scene.root} : std::vector(children.begin(), children.end());
+  };
+  Scene surface = fold(affine(all)), distance = fold(affine(strip(surface)));
+  const std::vector<NodeId> surfaces = pieces_of(surface), distances = pieces_of(distance);
+  const std::vector<NodeFacts> known = analyse(distance.graph);
+  std::vector<CompiledPiece> pieces;
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    distance.root = distances[i];
+    surface.root = surfaces[i];
+    auto field = compile_field(surface, distance, known, painted, source, diagnostics, options);
+    if (!field) return std::nullopt;
+    pieces.push_back(
+        {*std::move(field), is_convex(distance.graph, distances[i]), closed_form(distance.graph, distances[i])});
+  }
+  return pieces;
 }
 
 // Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
@@ -205,7 +231,8 @@ std::optional<std::vector<Medium>> compile_media(const ElaboratedScene& scene, b
       report_media(maker.graph(), maker.first_body(i), "instructions", options.limits, diagnostics);
       return std::nullopt;
     }
-    auto compiled = compile_field(medium.scene, inside, analyse(inside.graph), painted, source, diagnostics, options);
+    auto compiled = compile_field(painted ? optimise(medium.scene, true, options, nullptr) : inside, inside,
+                                  analyse(inside.graph), painted, source, diagnostics, options);
     if (!compiled) return std::nullopt;
     instructions = std::min(most, instructions + compiled->distance.instructions());
     media.push_back({std::move(*compiled), medium.material});
@@ -311,10 +338,13 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
   const std::vector<NodeFacts> known = analyse(field.graph);
   const bool tagged = needs_tags(elaborated->surfaces);
-  std::optional<CompiledField> whole =
-      compile_field(elaborated->scene, field, known, tagged, source, diagnostics, options);
+  const Scene painted = tagged || options.pieces ? optimise(elaborated->scene, true, options, nullptr) : Scene{};
+  std::optional<CompiledField> whole = compile_field(painted, field, known, tagged, source, diagnostics, options);
   if (!whole) return std::nullopt;
   leave_solids(elaborated->camera, whole->distance);
+  std::optional<std::vector<CompiledPiece>> pieces{std::in_place};
+  if (options.pieces) pieces = compile_pieces(painted, tagged, source, diagnostics, options);
+  if (!pieces) return std::nullopt;
   std::optional<std::vector<Medium>> media = compile_media(*elaborated, tagged, source, diagnostics, options);
   if (!media) return std::nullopt;
   std::optional<std::vector<vm::VerifiedProgram>> formulas =
@@ -339,6 +369,7 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(source),
                        origin,
                        whole_extent,
+                       std::move(*pieces),
                        std::move(*media),
                        std::move(area_lights),
                        std::move(*formulas),

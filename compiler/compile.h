@@ -37,6 +37,8 @@ struct CompileOptions {
   // Give a model in a foreign format a ground, a light and a camera that frames the model
   // (compiler/frontend/stage.h).
   bool stage = false;
+  // Compile the scene's pieces, too (CompiledScene::pieces), and not only the whole.
+  bool pieces = false;
   // Called with the source and its imports, which contain the spans of all diagnostics, even if reading the source
   // fails.
   std::function<void(const Source& source)> on_source;

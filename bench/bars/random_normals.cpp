@@ -34,7 +34,7 @@ compiler::CompiledScene scene_of(test::Random& random, Kind kind, const std::vec
   const compiler::NodeFacts& known = maker.known(graph.root);
   compiler::CompiledField field{program,        program, known.box, known.box, known.lipschitz, known.cancellation,
                                 known.certified};
-  compiler::CompiledScene scene{{}, std::move(field), {}, dvec3(0), {}, {}, {}, {}, graph.graph.size(), {}};
+  compiler::CompiledScene scene{{}, std::move(field), {}, dvec3(0), {}, {}, {}, {}, {}, graph.graph.size(), {}};
   scene.surfaces.push_back({"it", 0});
   scene.materials.emplace_back();
   return scene;

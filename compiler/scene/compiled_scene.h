@@ -153,6 +153,23 @@ struct CompiledField {
   double rest_lipschitz = 0;
 };
 
+// A solid that a ray enters at a place that a formula gives: the points q = linear * p + translation of a shape
+// around the origin.
+struct ClosedForm {
+  enum class Shape : std::uint8_t { None, Ball, Box, Cylinder, HalfSpace };
+  Shape shape = Shape::None;
+  glm::dmat3 linear{1.0};
+  glm::dvec3 translation{0.0};
+  // Ball: radius. Box: half sizes. Cylinder about y: radius, half height. HalfSpace: unit normal, offset along it.
+  std::array<double, 4> size{};
+};
+
+// A part of the scene, which is the union of its pieces (compiler/passes/split.h).
+struct CompiledPiece : CompiledField {
+  bool convex;  // the distance is a convex function
+  ClosedForm form;
+};
+
 // The interior of all bodies of one transparent material (compiler/analysis/media.h).
 struct Medium : CompiledField {
   std::uint32_t material;  // index into CompiledScene::materials
@@ -165,6 +182,7 @@ struct CompiledScene : SceneTables, CompiledField {
   Source source;
   glm::dvec3 origin{0};       // place in the scene of the programs' zero, scene units (compiler/analysis/origin.h)
   Box extent;                 // of all bounded parts (compiler/analysis/extent.h); empty if there are none
+  std::vector<CompiledPiece> pieces;  // in the order of the scene; empty unless CompileOptions::pieces
   std::vector<Medium> media;  // of the transparent materials, in the materials' order
   std::vector<AreaLight> area_lights;         // in file order; of coincident area lights only the first
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates

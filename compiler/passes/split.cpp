@@ -1,0 +1,218 @@
+#include "compiler/passes/split.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <span>
+
+#include "compiler/geometry/affine.h"
+#include "compiler/geometry/box_tree.h"
+#include "compiler/graph/rewrite.h"
+#include "compiler/passes/signs.h"
+#include "compiler/shapes/bounds.h"
+#include "compiler/shapes/node_table.h"
+
+namespace fathom::compiler {
+namespace {
+
+// Cost of an evaluation besides the program, multiply-adds: the step of the marcher.
+constexpr double kStepCost = 40;
+
+double surface_of_box(const Box& box) {
+  if (box.empty()) return 0;
+  const glm::dvec3 d = box.hi - box.lo;
+  return d.x * d.y + d.y * d.z + d.z * d.x;
+}
+
+double cost_of(std::span<const Instruction> instructions) {
+  double cost = 0;
+  for (const Instruction& each : instructions)
+    cost += static_cast<double>(vm::instruction_cost(vm::opcode_word(each.opcode, each.operand)));
+  return cost;
+}
+
+class Splitting {
+ public:
+  explicit Splitting(const Scene& scene) : scene_(scene), free_(only_sign_counts(scene)) {
+    for (const bool reached : reachable(scene)) most_ += 4 * static_cast<std::size_t>(reached);
+  }
+
+  Pieces run() {
+    const std::vector<bool> reached = reachable(scene_);
+    whole_.resize(scene_.root + 1);
+    arms_.resize(scene_.root + 1);
+    for (NodeId id = 0; id <= scene_.root; ++id) {
+      if (reached[id]) visit(id);
+    }
+    return {std::move(out_), std::move(arms_[scene_.root])};
+  }
+
+ private:
+  void visit(NodeId id) {
+    std::vector<NodeId> children;
+    for (const NodeId child : scene_.graph.children(id)) children.push_back(whole_[child]);
+    whole_[id] = add(id, children);
+    arms_[id] = arms_of(id, children);
+    if (arms_[id].empty()) arms_[id] = {whole_[id]};
+  }
+
+  // Returns the arms that the node divides into, or none if it stays one piece.
+  std::vector<NodeId> arms_of(NodeId id, const std::vector<NodeId>& children) {
+    const std::span<const NodeId> operands = scene_.graph.children(id);
+    switch (scene_.graph.kind(id)) {
+      case Kind::Union: {
+        std::vector<NodeId> arms;
+        for (const NodeId operand : operands) arms.insert(arms.end(), arms_[operand].begin(), arms_[operand].end());
+        return is_worth(id, arms) ? arms : std::vector<NodeId>{};
+      }
+      case Kind::Transform:
+      case Kind::Scaled:
+      case Kind::Paint:
+      case Kind::Round:
+      case Kind::Subtraction:
+        return distributed(id, children, 0);
+      case Kind::Intersection: {
+        const auto several =
+            std::ranges::find_if(operands, [&](NodeId operand) { return arms_[operand].size() > 1; });
+        if (several == operands.end()) return {};
+        return distributed(id, children, static_cast<std::size_t>(several - operands.begin()));
+      }
+      default:
+        return {};
+    }
+  }
+
+  // Returns the node over each arm of its operand number `over`.
+  std::vector<NodeId> distributed(NodeId id, std::vector<NodeId> children, std::size_t over) {
+    const std::vector<NodeId> inner = arms_[scene_.graph.children(id)[over]];
+    if (inner.size() == 1) return {};
+    if (scene_.graph.kind(id) == Kind::Subtraction) children = with_arms_of_cuts(id);
+    std::vector<NodeId> arms;
+    std::size_t copied = 0;
+    for (const NodeId arm : inner) {
+      children[over] = arm;
+      const std::vector<NodeId> operands =
+          scene_.graph.kind(id) == Kind::Subtraction && free_[id] ? reaching(children) : children;
+      copied += operands.size();
+      if (copied_ + copied > most_) return {};
+      arms.push_back(operands.size() == 1 && children.size() > 1 ? arm : add(id, operands));
+    }
+    copied_ += copied;
+    return arms;
+  }
+
+  // Returns a subtraction's operands, each cut divided: a - (b | c) = a - b - c.
+  std::vector<NodeId> with_arms_of_cuts(NodeId id) const {
+    std::vector<NodeId> operands;
+    for (const NodeId operand : scene_.graph.children(id)) {
+      const std::vector<NodeId>& arms = arms_[operand];
+      if (operands.empty()) {
+        operands.push_back(whole_[operand]);
+      } else {
+        operands.insert(operands.end(), arms.begin(), arms.end());
+      }
+    }
+    return operands;
+  }
+
+  // Returns a subtraction's operands without the cuts that do not reach the box of the first.
+  std::vector<NodeId> reaching(const std::vector<NodeId>& operands) const {
+    std::vector<NodeId> kept = {operands[0]};
+    std::copy_if(operands.begin() + 1, operands.end(), std::back_inserter(kept),
+                 [&](NodeId cut) { return !apart(facts_[operands[0]].box, facts_[cut].box); });
+    return kept;
+  }
+
+  bool is_worth(NodeId id, std::span<const NodeId> arms) const {
+    const Box& all = facts_[whole_[id]].box;
+    double apart = 0, together = kStepCost;
+    for (const NodeId arm : arms) {
+      const Box& box = facts_[arm].box;
+      if (!box.finite()) return true;
+      apart += surface_of_box(box) * (cost_[arm] + kStepCost);
+      together += cost_[arm];
+    }
+    return apart < surface_of_box(all) * together;
+  }
+
+  // Adds a node like number `id` over these children.
+  NodeId add(NodeId id, const std::vector<NodeId>& children) {
+    const Kind kind = scene_.graph.kind(id);
+    const NodeId node = out_.add(kind, scene_.graph.params(id), children, scene_.graph.origin(id));
+    if (node < facts_.size()) return node;
+    facts_.push_back(derive_facts(out_, node, facts_));
+    const Code code = spec(kind).code(scene_.graph.params(id));
+    double cost = cost_of(code.after);
+    for (const auto& chain : code.points) {
+      cost += cost_of(chain);
+      for (const NodeId child : children) cost += cost_[child];
+    }
+    cost_.push_back(cost);
+    return node;
+  }
+
+  const Scene& scene_;
+  const std::vector<bool> free_;
+  std::size_t most_ = 0, copied_ = 0;  // nodes that may be, and that are, copied over arms
+  Graph out_;
+  std::vector<NodeFacts> facts_;           // [node of out_]
+  std::vector<double> cost_;               // [node of out_] of the program, multiply-adds, as if nothing was shared
+  std::vector<NodeId> whole_;              // [node] the same node of out_
+  std::vector<std::vector<NodeId>> arms_;  // [node] nodes of out_ whose union is the node
+};
+
+}  // namespace
+
+Pieces split(const Scene& scene) { return Splitting(scene).run(); }
+
+bool is_convex(const Graph& graph, NodeId id) {
+  const auto children = graph.children(id);
+  switch (graph.kind(id)) {
+    case Kind::Transform:
+    case Kind::Scaled:
+    case Kind::Paint:
+    case Kind::Round:
+      return is_convex(graph, children[0]);
+    case Kind::Intersection:
+      return std::ranges::all_of(children, [&](NodeId child) { return is_convex(graph, child); });
+    default: {
+      if (spec(graph.kind(id)).category != Category::Primitive) return false;
+      const Code code = spec(graph.kind(id)).code(graph.params(id));
+      return code.after.size() == 1 && code.points.size() == 1 && code.points[0].empty() &&
+             has(vm::info(code.after[0].opcode).facts, vm::Fact::Convex);
+    }
+  }
+}
+
+ClosedForm closed_form(const Graph& graph, NodeId id) {
+  using Shape = ClosedForm::Shape;
+  const auto params = graph.params(id);
+  switch (graph.kind(id)) {
+    case Kind::Paint:
+    case Kind::Scaled:
+      return closed_form(graph, graph.children(id)[0]);
+    case Kind::Transform: {
+      ClosedForm form = closed_form(graph, graph.children(id)[0]);
+      const Affine map = Affine::from_params(params);
+      const glm::dmat3 linear = glm::transpose(glm::dmat3(map.rows[0], map.rows[1], map.rows[2]));
+      form.translation += form.linear * map.translation;
+      form.linear = form.linear * linear;
+      return form;
+    }
+    case Kind::Sphere:
+      return {Shape::Ball, glm::dmat3(1.0), glm::dvec3(0.0), {params[0]}};
+    case Kind::Box:
+      return {Shape::Box, glm::dmat3(1.0), glm::dvec3(0.0), {params[0], params[1], params[2]}};
+    case Kind::Cylinder:
+      return {Shape::Cylinder, glm::dmat3(1.0), glm::dvec3(0.0), {params[0], params[1]}};
+    case Kind::Plane: {
+      const Code code = spec(Kind::Plane).code(params);
+      const std::vector<double>& k = code.after[0].immediates;
+      return {Shape::HalfSpace, glm::dmat3(1.0), glm::dvec3(0.0), {k[0], k[1], k[2], k[3]}};
+    }
+    default:
+      return {};
+  }
+}
+
+}  // namespace fathom::compiler
