@@ -12,6 +12,7 @@
 
 #include "runtime/base/machine.h"
 #include "runtime/base/tiles.h"
+#include "runtime/field/pieces.h"
 #include "runtime/field/region_store.h"
 #include "runtime/film/adaptive.h"
 #include "runtime/passes.h"
@@ -104,7 +105,7 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
                         Lights(scene, options.environment),
                         {},
                         true};
-  if (settings.regions) {
+  if (settings.regions && !settings.pieces) {
     Settings share = settings;
     share.spp = samples_with(scene, settings, options);
     RegionOptions regions = region_options(share);
@@ -119,6 +120,7 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     add_native_code(context.field, evaluations);
     context.media.add_native_code(evaluations);
   }
+  if (settings.pieces) add_pieces(context.field, scene, settings.far, settings.native_code);
   RealScratch scratch;
   const glm::dvec3 eye = context.camera.position();
   if (is_uniform_around(eye, context.camera.spread(context.filter.radius()), context.field, context.media, scratch)) {

@@ -17,6 +17,7 @@
 namespace fathom::runtime {
 
 class RegionStore;
+struct Pieces;
 
 struct Field {
   const vm::VerifiedProgram* distance;
@@ -47,6 +48,8 @@ struct Field {
   struct {
     std::shared_ptr<const vm::NativeProgram> distance, convex, surface;
   } native;
+
+  std::shared_ptr<const Pieces> pieces;  // of the scene, which rays then meet one by one, or null (add_pieces())
 
   // Alternative to the machine for float distances, or null: benches compare the machine with other evaluators of the
   // same scene. The function may read and write past `count` up to a whole register.

@@ -1,5 +1,6 @@
 #include "runtime/march/march.h"
 
+#include "runtime/march/piece_marcher.h"
 #include "runtime/march/stream.h"
 
 namespace fathom::runtime {
@@ -17,7 +18,7 @@ class CertifiedMarcher final : public Marcher {
       if (!enters(rays, i)) continue;
       ClippedRay ray;
       set_clipped_ray(ray, rays, i);
-      certify_from(ray, rays.side[i], {0, rays.length[i], 0}, 0, 0);
+      certify_from(field_, ray, rays.side[i], {0, rays.length[i], 0}, 0, 0);
     }
   }
   void step() override {}
@@ -27,6 +28,8 @@ class CertifiedMarcher final : public Marcher {
 
 std::unique_ptr<Marcher> make_marcher(const Field& field, const Marching& marching) {
   if (marching.method == Method::Certified) return std::make_unique<CertifiedMarcher>(field);
+  if (field.pieces && marching.method == Method::Tiered && marching.precision == Precision::Single)
+    return std::make_unique<PieceMarcher>(field, marching);
   if (marching.precision == Precision::Double) return std::make_unique<Stream<double>>(field, marching);
   return std::make_unique<Stream<float>>(field, marching);
 }

@@ -39,9 +39,10 @@ void Marcher::begin_waiting() {
   clipped_ = waiting_.count;
 }
 
-void Marcher::certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
-                           std::uint64_t instructions) {
-  searched_.push_back({CertifiedSearch(field_, ray.origin, ray.direction, side, interval),
+void Marcher::certify_from(const Field& field, const ClippedRay& ray, int side, const RayInterval& interval,
+                           std::uint32_t evaluations, std::uint64_t instructions) {
+  searched_.push_back({&field,
+                       CertifiedSearch(field, ray.origin, ray.direction, side, interval),
                        ray,
                        interval.end,
                        {evaluations, 0, instructions}});
@@ -69,8 +70,12 @@ void Marcher::evaluate_searches() {
     const glm::dvec3 point = searched_[i].search.point();
     for (int axis = 0; axis < 3; ++axis) points_[axis][i] = point[axis];
   }
-  field_.evaluate({points_[0].data(), points_[1].data(), points_[2].data()}, count, values_.data(),
-                  instructions_.data(), real_scratch_);
+  for (std::size_t i = 0, end = 0; i < count; i = end) {  // rays of one field together
+    const Field* const field = searched_[i].field;
+    while (end < count && searched_[end].field == field) ++end;
+    field->evaluate({points_[0].data() + i, points_[1].data() + i, points_[2].data() + i}, end - i,
+                    values_.data() + i, instructions_.data() + i, real_scratch_);
+  }
   for (std::size_t i = count; i-- > 0;) {
     searched_[i].search.supply(values_[i], instructions_[i], real_scratch_);
     if (searched_[i].search.done()) end_search(i);

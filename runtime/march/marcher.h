@@ -22,6 +22,15 @@ namespace fathom::runtime {
 
 class Marcher {
  public:
+  // A ray clipped to the scene's bound.
+  struct ClippedRay {
+    glm::dvec3 origin;     // where the ray enters the bound
+    glm::dvec3 direction;  // unit length
+    double entry;          // distance from the ray's origin to `origin`
+    double length;         // within the bound
+    std::uint32_t id;
+  };
+
   static constexpr int kMaxRays = RayBlock::kCapacity;
 
   explicit Marcher(const Field& field);
@@ -50,20 +59,11 @@ class Marcher {
     out.swap(ray_hits_);
     ray_hits_.clear();
   }
-  const MarchCounters& counters() const { return counters_; }
+  virtual MarchCounters counters() const { return counters_; }
   vm::Workspace& workspace() { return workspace_; }
   StageClock& clock() { return clock_; }  // its owner sets the stages, the marcher enters Resolve
 
  protected:
-  // A ray clipped to the scene's bound.
-  struct ClippedRay {
-    glm::dvec3 origin;     // where the ray enters the bound
-    glm::dvec3 direction;  // unit length
-    double entry;          // distance from the ray's origin to `origin`
-    double length;         // within the bound
-    std::uint32_t id;
-  };
-
   // Starts clipped rays of `rays`, from the last on, as long as there is room, and removes them from the block. live_
   // counts the rays under way.
   virtual void begin(RayBlock& rays) = 0;
@@ -103,8 +103,8 @@ class Marcher {
   }
   // Hands a ray that is no longer live to the search in double, after `evaluations` in float. If the interval ends
   // before the ray and has no hit, the ray goes on in float from there.
-  void certify_from(const ClippedRay& ray, int side, const RayInterval& interval, std::uint32_t evaluations,
-                    std::uint64_t instructions);
+  void certify_from(const Field& field, const ClippedRay& ray, int side, const RayInterval& interval,
+                    std::uint32_t evaluations, std::uint64_t instructions);
 
   const Field& field_;
   const int capacity_;
@@ -138,6 +138,7 @@ class Marcher {
   };
   // A ray that is being searched in double.
   struct SearchedRay {
+    const Field* field;
     CertifiedSearch search;
     ClippedRay ray;
     double end;  // of the search: ray.length, or less if the ray then goes on in float

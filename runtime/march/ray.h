@@ -8,6 +8,8 @@
 
 namespace fathom::runtime {
 
+inline constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
+
 struct Ray {
   glm::dvec3 origin;     // scene units
   glm::dvec3 direction;  // any finite length except zero; the marcher normalises it unless it has unit length
@@ -16,7 +18,9 @@ struct Ray {
   // dg/dt expected at the origin, relative to the field's Lipschitz constant, in [-1,1]: dot(gradient, direction)
   // when the ray leaves a surface. A guess too high only makes the first step fail.
   float slope = -1;
-  float clear = 0;   // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
+  float clear = 0;  // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
+  std::uint32_t leaves =
+      kNoPiece;  // piece of the scene whose surface the ray leaves outwards (runtime/field/pieces.h)
 };
 
 // The result of following a ray: where it hit, or the reason why it did not.
@@ -31,6 +35,7 @@ struct RayHit {
   float width = 0;                 // width of the bracket around the hit, scene units
   double t = 0;                    // distance from the origin to the hit, scene units
   std::uint64_t instructions = 0;  // number of instructions of the field's program, over all evaluations
+  std::uint32_t piece = kNoPiece;  // of the scene that was hit, if rays meet pieces
 };
 
 }  // namespace fathom::runtime

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/field/pieces.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -43,48 +45,80 @@ static_assert(Lanes<float>::kCapacity <= kMaxPoints);
 }  // namespace
 
 template <class S>
-Stream<S>::Stream(const Field& field, const Marching& marching)
+Stream<S>::Stream(const Field& field, const Marching& marching, const PieceStream& source)
     : Marcher(field),
+      source_(source),
+      per_lane_(source.pieces && source.pieces->all_templates[source.number].per_lane),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
       uses_epsilon_(info(rules_.method).uses_epsilon),
       takes_slope_hint_(!uses_epsilon_),
-      max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
-      use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
-      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
+      max_lanes_(field.regions || source.pieces ? static_cast<int>(kLanes) : kBlock),
+      use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered &&
+                     (source.pieces ? source.pieces->all_templates[source.number].convex : field.has_convexity())),
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {
+  static_assert(kLanes <= vm::kMaxRowLanes);
+  if (!source.pieces) return;
+  convex_.fill(std::numeric_limits<S>::infinity());
+  if (per_lane_) {
+    constants_.resize(vm::constants_in(source.pieces->all_templates[source.number].code) * vm::kRowStride);
+  }
+}
+
+// Returns the field of the lane's ray.
+template <class S>
+const Field& Stream<S>::field_of(std::size_t lane) const {
+  return source_.pieces ? source_.pieces->fields[source_.piece_of[clipped_rays_[lane].id]] : field_;
+}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
   while (rays.count > 0 && live_ < max_lanes_) {
     const std::size_t i = --rays.count;
-    if (enters(rays, i)) start_lane(rays, i);
+    if (!enters(rays, i)) continue;
+    const std::size_t lane = take_lane();
+    set_clipped_ray(clipped_rays_[lane], rays, i);
+    start_lane(lane, rays.side[i], rays.slope[i]);
   }
 }
 
 template <class S>
-void Stream<S>::start_lane(const RayBlock& rays, std::size_t i) {
+void Stream<S>::start(const ClippedRay& ray, int side, float slope) {
+  const std::size_t lane = take_lane();
+  clipped_rays_[lane] = ray;
+  start_lane(lane, side, slope);
+}
+
+template <class S>
+std::size_t Stream<S>::take_lane() {
   ++live_;
-  std::size_t lane = lanes_used_;
-  if (free_lanes_.empty()) {
-    ++lanes_used_;
-  } else {
-    lane = free_lanes_.back();
-    free_lanes_.pop_back();
-  }
+  if (free_lanes_.empty()) return lanes_used_++;
+  const std::size_t lane = free_lanes_.back();
+  free_lanes_.pop_back();
+  return lane;
+}
+
+// Sets the state of the lane to that before the first evaluation of its clipped ray.
+template <class S>
+void Stream<S>::start_lane(std::size_t lane, int side, float slope) {
+  const ClippedRay& ray = clipped_rays_[lane];
   S* const first = &lanes_->row[0][lane];
   const auto put = [&](int row, S value) { first[row * static_cast<int>(Lanes<S>::kStride)] = value; };
   for (int axis = 0; axis < 3; ++axis) {
-    const S origin = static_cast<S>(rays.origin[axis][i]);
+    const S origin = static_cast<S>(ray.origin[axis]);
     put(kX + axis, origin);
     put(kOx + axis, origin);
-    put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
+    put(kDx + axis, static_cast<S>(ray.direction[axis]));
   }
   for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
-  put(kTMax, round_down<S>(rays.length[i]));
-  put(kSide, rays.side[i]);
-  put(kM, takes_slope_hint_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
+  put(kTMax, round_down<S>(ray.length));
+  put(kSide, static_cast<S>(side));
+  put(kM, takes_slope_hint_ ? std::clamp(static_cast<S>(slope), S(-1), S(0.9)) : S(-1));
   put(takes_slope_hint_ ? int{kBackoff} : int{kOverstepped}, takes_slope_hint_ ? S(kFirstBackoff) : S(1));
-  set_clipped_ray(clipped_rays_[lane], rays, i);
+  if (per_lane_) {
+    const std::vector<float>& row = source_.pieces->rows[source_.piece_of[ray.id]];
+    for (std::size_t k = 0; k < row.size(); ++k) constants_[k * vm::kRowStride + lane] = row[k];
+  }
   instructions_[lane] = 0;
 }
 
@@ -93,7 +127,12 @@ void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
   const auto count = static_cast<std::size_t>(live_);
   const vm::Points points{row[kX], row[kY], row[kZ]};
-  if (use_convexity_) {
+  if (per_lane_) {
+    const PieceTemplate& shared = source_.pieces->all_templates[source_.number];
+    if (shared.native) return shared.native->evaluate_rows(points, count, constants_.data(), distance_.data());
+    return vm::evaluate_rows(shared.code, points, count, constants_.data(), distance_.data(), workspace_);
+  }
+  if (use_convexity_ && !source_.pieces) {
     return field_.evaluate_convex(points, count, distance_.data(), convex_.data(), workspace_);
   }
   field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
@@ -120,6 +159,8 @@ void Stream<S>::compact_lanes() {
     for (auto& row : lanes_->row) row[free_lane] = row[last];
     clipped_rays_[free_lane] = clipped_rays_[last];
     instructions_[free_lane] = instructions_[last];
+    for (std::size_t k = 0; k < constants_.size(); k += vm::kRowStride)
+      constants_[k + free_lane] = constants_[k + last];
   }
   free_lanes_.clear();
 }
@@ -149,7 +190,7 @@ void Stream<S>::finish(std::size_t i) {
   free_lanes_.push_back(i);
   const auto verdict = static_cast<LaneVerdict>(number(kVerdict));
   if (verdict == LaneVerdict::Certify)
-    return certify_from(ray, side, undecided_interval(i), evaluations, instructions);
+    return certify_from(field_of(i), ray, side, undecided_interval(i), evaluations, instructions);
   RayHit::Status status = RayHit::Status::Miss;
   float width = 0;
   double t = 0;

@@ -71,6 +71,7 @@ void begin_path(const RenderContext& context, const PathKey& key, PathState& pat
   path.ray.side = path.medium.side;
   path.ray.slope = -1;
   path.ray.clear = 0;
+  path.ray.leaves = kNoPiece;
   path.throughput = glm::vec3(1);
   path.eta_scale = 1;
   path.bounces = path.null_interactions = 0;

@@ -8,6 +8,7 @@ void set_hit(const RayHit& ray_hit, const Ray& ray, Hit& hit) {
   hit.wo = glm::vec3(-ray.direction);
   hit.side = ray_hit.side;
   hit.width = ray_hit.width;
+  hit.piece = ray_hit.piece;
 }
 
 MaterialPoint mix_of(const RenderContext& context, const vm::SurfaceShares& shares, glm::dvec3 position,

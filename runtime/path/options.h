@@ -43,6 +43,9 @@ struct Execution {
   bool regions = true;                    // build regions if they make the scene faster (runtime/field/regions.h)
   std::size_t region_memory = 128u << 20;  // max size of the regions, bytes
   bool native_code = true;                // compile programs to machine code where that pays
+  // Rays meet the scene's pieces one by one (runtime/field/pieces.h), if the scene has them. The picture is then as
+  // near the truth, but has other bits.
+  bool pieces = false;
   FilmLayers layers;
   bool profile = false;  // measure the times of stages (Stats::stages)
 };

@@ -23,6 +23,7 @@ struct Hit {
   glm::vec3 wo;         // unit length, back along the ray
   int side;             // of the space the ray came through: +1 outside, -1 inside a solid
   float width;          // of the bracket around the hit, scene units
+  std::uint32_t piece = kNoPiece;  // RayHit::piece
 };
 
 struct SurfacePoint {
@@ -72,7 +73,9 @@ inline void set_spawned_ray(const Hit& hit, const SurfacePoint& point, glm::dvec
   const float cosine = glm::dot(point.normal, glm::vec3(direction));
   ray.side = through ? -hit.side : hit.side;
   ray.slope = std::abs(cosine) * point.steepness;
-  ray.clear = !through && cosine > kMinLeaving ? point.clear : 0;
+  const bool leaves = !through && cosine > kMinLeaving;
+  ray.clear = leaves ? point.clear : 0;
+  ray.leaves = leaves ? hit.piece : kNoPiece;
 }
 inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
   Ray ray;

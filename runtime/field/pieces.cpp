@@ -1,0 +1,65 @@
+#include "runtime/field/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace fathom::runtime {
+namespace {
+
+// Pieces of one template have float errors within a factor of two, because the largest holds for all.
+int magnitude_of(double cancellation) { return std::ilogb(std::max(cancellation, 0.125)); }
+
+// True if lanes can hold the constants of pieces of this field: its program is run as it is.
+bool runs_program(const Field& field) { return !field.cells && !field.regions && !field.far_levels.used(); }
+
+}  // namespace
+
+void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native) {
+  if (scene.pieces.size() < 2) return;
+  constexpr double kEvaluations = 1e7;  // enough for machine code to repay
+  auto pieces = std::make_shared<Pieces>();
+  using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, double, int, bool>;
+  std::map<Key, std::uint32_t> known;
+  for (const compiler::CompiledPiece& piece : scene.pieces) {
+    Field own = make_field(piece, extent_of(scene), far);
+    own.convex = false;  // the radius of convexity is for unions
+    pieces->boxes.push_back(own.bound);
+    pieces->forms.push_back(piece.form);
+    vm::ProgramTemplate code = vm::template_of(piece.distance);
+    const bool alike = runs_program(own);
+    const Key key{code.words, code.doubles, own.lipschitz, magnitude_of(piece.cancellation), piece.convex};
+    const auto next = static_cast<std::uint32_t>(pieces->all_templates.size());
+    const auto [found, is_new] = alike ? known.try_emplace(key, next) : std::pair(known.end(), true);
+    if (is_new) {
+      PieceTemplate shared{own, piece.convex, false, std::move(code), nullptr};
+      shared.field.bound = compiler::Box::everything();
+      pieces->all_templates.push_back(std::move(shared));
+      pieces->templates.push_back(next);
+    } else {
+      PieceTemplate& shared = pieces->all_templates[found->second];
+      shared.per_lane = true;
+      shared.field.cancellation = std::max(shared.field.cancellation, own.cancellation);
+      pieces->templates.push_back(found->second);
+    }
+    pieces->fields.push_back(std::move(own));
+  }
+  pieces->rows.resize(scene.pieces.size());
+  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+    if (pieces->all_templates[pieces->templates[i]].per_lane)
+      pieces->rows[i] = vm::constants_of(scene.pieces[i].distance);
+  }
+  for (PieceTemplate& shared : pieces->all_templates) {
+    if (!native) continue;
+    if (shared.per_lane) {
+      shared.native = vm::NativeProgram::compile_rows(shared.code);
+    } else {
+      add_native_code(shared.field, kEvaluations);
+    }
+  }
+  field.pieces = std::move(pieces);
+}
+
+}  // namespace fathom::runtime

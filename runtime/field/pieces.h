@@ -1,0 +1,40 @@
+// The scene's pieces as rays meet them: the field of each, its box, and the templates that pieces share.
+// Tested by: tests/runtime/march/piece_marcher_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "compiler/geometry/box.h"
+#include "compiler/scene/compiled_scene.h"
+#include "runtime/field/field.h"
+#include "vm/native/native_program.h"
+#include "vm/prune/program_template.h"
+
+namespace fathom::runtime {
+
+// Pieces whose programs differ in nothing but constants, and whose float errors are alike, are evaluated side by
+// side.
+struct PieceTemplate {
+  Field field;    // what its pieces share; `bound` is everything, `cancellation` the largest
+  bool convex;    // its pieces' distances are convex functions
+  bool per_lane;  // lanes hold the constants of their pieces; false if the template has a single piece
+  vm::ProgramTemplate code;
+  std::shared_ptr<const vm::NativeProgram> native;  // of `code`; null: the interpreter evaluates, with the same bits
+};
+
+struct Pieces {
+  std::vector<Field> fields;                // [piece]
+  std::vector<compiler::Box> boxes;         // [piece] around the surface, with the margin of Field::bound
+  std::vector<std::uint32_t> templates;     // [piece] index into all_templates
+  std::vector<compiler::ClosedForm> forms;  // [piece]
+  std::vector<std::vector<float>> rows;     // [piece] constants of its template; empty unless per_lane
+  std::vector<PieceTemplate> all_templates;
+};
+
+// Gives the scene's pieces to its field: rays then meet the pieces, not the whole. A scene of one piece stays whole.
+// `native`: with machine code.
+void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native);
+
+}  // namespace fathom::runtime

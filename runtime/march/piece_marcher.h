@@ -1,0 +1,77 @@
+// A marcher that follows rays from piece to piece (runtime/field/pieces.h) instead of through the whole scene's
+// field.
+//
+// A ray begins the pieces whose boxes it meets, one after another in the order in which it enters them, and ends when
+// the next box lies beyond its hit. Its hit depends on the ray and the pieces alone. If several roots lie within
+// their brackets, the piece that comes first in the scene is hit: coincident faces have one surface.
+//
+// Rays of side +1 alone meet pieces. All others follow the whole field.
+// Not a public header: march.h is. Tested by: tests/runtime/march/piece_marcher_test.cpp
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/field/pieces.h"
+#include "runtime/march/closed_form.h"
+#include "runtime/march/marcher.h"
+#include "runtime/march/method.h"
+#include "runtime/march/piece_boxes.h"
+#include "runtime/march/piece_proposals.h"
+#include "runtime/march/stream.h"
+
+namespace fathom::runtime {
+
+class PieceMarcher final : public Marcher {
+ public:
+  PieceMarcher(const Field& field, const Marching& marching);
+
+  MarchCounters counters() const override;
+
+ private:
+  struct Root {
+    double t;  // from the clipped ray's origin
+    float width;
+    std::uint32_t piece;
+    std::int8_t side;
+  };
+  // A ray under way. Its number is the id of its part within a piece.
+  struct Traveller {
+    ClippedRay ray;
+    float slope;
+    std::uint32_t leaves;  // piece whose surface the ray leaves outwards, or kNoPiece
+    std::vector<BoxedPiece> boxes;
+    std::size_t next;         // of `boxes`
+    std::vector<Root> roots;  // in the order in which they were found
+    double reach;             // no root beyond matters
+    RayHit::Status miss;      // status without a root
+    std::int8_t side;
+    std::uint32_t evaluations, certified;
+    std::uint64_t instructions;
+  };
+
+  void begin(RayBlock& rays) override;
+  void step() override;
+  void begin_next_piece(std::uint32_t number);
+  void start(std::uint32_t number, const BoxedPiece& box);
+  void answer(std::uint32_t shared);
+  void end_piece(const RayHit& found);
+  void end_ray(std::uint32_t number);
+  void advance(Marcher& part);
+  Stream<float>& stream(std::uint32_t number);
+
+  const Pieces& pieces_;
+  const Marching marching_;
+  const PieceBoxes boxes_;
+  Stream<float> whole_;
+  std::vector<std::unique_ptr<Stream<float>>> streams_;     // [template]
+  std::vector<std::unique_ptr<PieceProposals>> proposals_;  // [template]
+  std::vector<PieceProposals::Answer> answers_;
+  std::vector<std::uint32_t> piece_of_;  // [traveller] the piece that it is in
+  std::vector<Traveller> travellers_;
+  std::vector<std::uint32_t> free_;  // numbers of travellers
+  std::vector<RayHit> found_;
+};
+
+}  // namespace fathom::runtime

@@ -1,0 +1,195 @@
+// Rays that meet the scene's pieces find what the search in double finds in the whole field, whatever rays travel
+// with them.
+#include "runtime/march/piece_marcher.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "runtime/march/march.h"
+#include "runtime/measure/ray_sets.h"
+#include "runtime/path/surface.h"
+#include "runtime/render.h"
+#include "tests/support/catch.h"
+#include "tests/support/compiled.h"
+#include "tests/support/random/random_scene.h"
+#include "tests/support/scaled_cases.h"
+
+namespace fathom::piece_marcher_test {
+
+namespace {
+
+using namespace fathom;
+using namespace fathom::runtime;
+
+bool is_hit(const RayHit& hit) { return hit.status == RayHit::Status::Hit; }
+
+compiler::CompiledScene compiled(const std::string& text) {
+  compiler::CompileOptions options;
+  options.pieces = true;
+  return test::compiled(text, options);
+}
+
+Field field_of(const compiler::CompiledScene& scene, bool native = false) {
+  Field field = make_field(scene);
+  add_pieces(field, scene, std::nullopt, native);
+  return field;
+}
+
+// Objects on a ground: alike ones, which share templates, and turned, cut, blended and divided ones.
+std::string scene_text(std::uint64_t seed) {
+  test::Random random(seed);
+  const auto moved = [&](const std::string& shape) {
+    return fmt::format("object ({}).translate([{:.3f}, {:.3f}, {:.3f}])\n", shape, random.uniform(-2, 2),
+                       random.uniform(0, 1.5), random.uniform(-2, 2));
+  };
+  const auto size = [&] { return random.uniform(0.1, 0.6); };
+  std::string text =
+      "fathom 1\ncamera(position = [4, 3, 5], target = [0, 0.5, 0])\nobject plane([0, 1, 0], offset = 0)\n";
+  for (int i = 0; i < 6; ++i) text += moved(fmt::format("sphere({:.3f})", size()));
+  for (int i = 0; i < 4; ++i)
+    text += moved(fmt::format("box([{:.3f}, {:.3f}, 0.1]).rotate([{:.1f}, 9, 0])", size(), size(), 90 * size()));
+  text += moved(fmt::format("torus({:.3f}, 0.08)", size()));
+  text += moved("box([0.5, 0.5, 0.5]) - sphere(0.6)");
+  text += moved("sphere(0.3) +{0.1} box([0.1, 0.5, 0.1])");
+  text += moved("sphere(0.3) + sphere(0.3).translate([1, 0, 0]) - box([2, 0.05, 0.3])");
+  return text;
+}
+
+std::vector<Ray> departures(const compiler::CompiledScene& scene, const Field& field, const std::vector<Ray>& rays,
+                            std::uint64_t seed) {
+  test::Random random(seed);
+  std::vector<Ray> away;
+  vm::Workspace workspace;
+  for (const RayHit& found : march(field, rays).ray_hits) {
+    if (!is_hit(found)) continue;
+    const glm::dvec3 unit = glm::normalize(rays[found.id].direction);
+    const Hit hit{rays[found.id].origin + found.t * unit, glm::vec3(-unit), found.side, found.width, found.piece};
+    SurfacePoint point{};
+    find_surfaces(scene, field, {&hit, 1}, {&point, 1}, workspace);
+    glm::dvec3 direction = random.direction();
+    if (glm::dot(direction, glm::dvec3(point.normal)) < 0) direction = -direction;
+    away.push_back(spawn_ray(hit, point, direction, false));
+  }
+  return away;
+}
+
+int wrong_ones(const Field& field, const std::vector<Ray>& rays) {
+  const std::vector<RayHit> found = march(field, rays).ray_hits,
+                            exact = march(field, rays, {.method = Method::Certified}).ray_hits;
+  int wrong = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const double slack = 2e-5 * std::max(1.0, exact[i].t) + static_cast<double>(found[i].width);
+    wrong += is_hit(found[i]) != is_hit(exact[i]) || found[i].side != exact[i].side ||
+             (is_hit(found[i]) && std::abs(found[i].t - exact[i].t) > slack);
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("pieces: rays end where the search in double of the whole field ends them", "[march][pieces]") {
+  int wrong = 0, rays = 0, shared = 0;
+  RealScratch scratch;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const compiler::CompiledScene scene = compiled(scene_text(seed));
+    const Field field = field_of(scene, seed % 2 == 1);
+    for (const PieceTemplate& each : field.pieces->all_templates) shared += each.per_lane;
+    for (RaySet& set : make_ray_sets(scene, field, test::scaled_cases(240), seed)) {
+      std::erase_if(set.rays, [&](const Ray& ray) {
+        std::uint64_t instructions = 0;
+        return field.evaluate(ray.origin, scratch, instructions) < 1e-3;
+      });
+      for (Ray& ray : set.rays) ray.side = 1;
+      wrong += wrong_ones(field, set.rays);
+      const std::vector<Ray> away = departures(scene, field, set.rays, seed);
+      wrong += wrong_ones(field, away);
+      rays += static_cast<int>(set.rays.size() + away.size());
+    }
+  }
+  CAPTURE(rays);
+  CHECK(shared >= 12);
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("pieces: a ray's hit has the same bits alone, among others, and with machine code", "[march][pieces]") {
+  const compiler::CompiledScene scene = compiled(scene_text(3));
+  const Field field = field_of(scene), native = field_of(scene, true);
+  std::vector<Ray> rays = make_ray_sets(scene, field, 300, 1)[0].rays;
+  for (Ray& ray : rays) ray.side = 1;
+  const std::vector<Ray> away = departures(scene, field, rays, 1);
+  rays.insert(rays.end(), away.begin(), away.end());
+  const std::vector<RayHit> together = march(field, rays).ray_hits, fast = march(native, rays).ray_hits;
+  const auto equal = [](const RayHit& a, const RayHit& b) {
+    return a.status == b.status && a.side == b.side && a.evaluations == b.evaluations && a.certified == b.certified &&
+           a.width == b.width && a.t == b.t && a.instructions == b.instructions && a.piece == b.piece;
+  };
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    CHECK(equal(together[i], march(field, {&rays[i], 1}).ray_hits[0]));
+    CHECK(equal(together[i], fast[i]));
+  }
+}
+
+TEST_CASE("pieces: of coincident faces the first piece is hit", "[march][pieces]") {
+  const compiler::CompiledScene scene = compiled(
+      "fathom 1\nobject box([1, 1, 1]).translate([2, 0, 0])\nobject cylinder(1, 1).rotate([90, 0, 0])\n"
+      "object box([3, 0.5, 1]).translate([0, 0.7, 0])\nobject plane([0, 1, 0], offset = -1.5)\n");
+  const Field field = field_of(scene);
+  REQUIRE(field.pieces->fields.size() > 1);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 400; ++i) {
+    test::Random random(static_cast<std::uint64_t>(i));
+    rays.push_back({{random.uniform(-0.5, 0.5), random.uniform(0.3, 0.8), 5}, {0, 0, -1}, 100, 1});
+  }
+  const std::vector<RayHit> hits = march(field, rays).ray_hits;
+  for (const RayHit& hit : hits) {
+    REQUIRE(is_hit(hit));
+    CHECK(hit.t == Approx(4).margin(1e-5));
+    CHECK(hit.piece == hits[0].piece);
+  }
+}
+
+TEST_CASE("pieces: a picture has the same bits for any threads and tiles, and the light of the whole field's",
+          "[march][pieces]") {
+  const compiler::CompiledScene scene = compiled(scene_text(5) + "background [1, 0.9, 0.8]\n");
+  RenderOptions options;
+  options.width = 48, options.height = 32, options.spp = 8;
+  // Of every pixel, and the sum of all.
+  const auto picture = [&] {
+    const RenderResult result = render(scene, options);
+    std::vector<double> all(1);
+    for (int i = 0; i < options.width.value() * options.height.value(); ++i) {
+      all.push_back(result.film.means(i % 48, i / 48).radiance.x);
+      all[0] += all.back();
+    }
+    return all;
+  };
+  options.threads = 1;
+  const std::vector<double> whole = picture();
+  options.pieces = true;
+  const std::vector<double> one = picture();
+  options.threads = 3, options.tile = 7;
+  CHECK((one == picture()));
+  CHECK(one[0] == Approx(whole[0]).epsilon(0.01));
+}
+
+TEST_CASE("pieces: a ray meets no box that begins beyond its hit", "[march][pieces]") {
+  const std::vector<compiler::Box> boxes = {
+      {{-1, -1, -9}, {1, 1, -8}}, {{-1, -1, -4}, {1, 1, -2}}, {{3, 3, 3}, {4, 4, 4}}, {}};
+  std::vector<BoxedPiece> found;
+  PieceBoxes(boxes).find({0, 0, 0}, {0, 0, -1}, 100, found);
+  REQUIRE(found.size() == 2);
+  CHECK(found[0].piece == 1);
+  CHECK(found[0].entry == Approx(2).margin(1e-4));
+  CHECK(found[0].exit == Approx(4).margin(1e-4));
+  CHECK(found[1].piece == 0);
+  PieceBoxes(boxes).find({0, 0, 0}, {0, 0, -1}, 5, found);
+  CHECK(found.size() == 1);
+  PieceBoxes(boxes).find({0, 0, -3}, {0, 0, 1}, 5, found);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].entry == 0);
+}
+
+}  // namespace fathom::piece_marcher_test
