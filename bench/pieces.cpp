@@ -33,13 +33,31 @@ using runtime::RayHit;
 
 constexpr int kWidth = 320, kHeight = 180, kRounds = 5;
 
-double seconds_of(clockid_t clock) {
-  timespec now;
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+double seconds() {
+  timespec time;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
-double cpu_seconds() { return seconds_of(CLOCK_THREAD_CPUTIME_ID); }
-double process_seconds() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
+
+// Runs both in turns. Returns their median times, seconds of the process.
+struct Times {
+  double whole, pieces;
+};
+template <class Whole, class Pieces>
+Times median_times(const Whole& run_whole, const Pieces& run_pieces) {
+  std::vector<double> whole, pieces;
+  for (int i = 0; i < kRounds; ++i) {
+    const double begin = seconds();
+    run_whole();
+    const double between = seconds();
+    run_pieces();
+    whole.push_back(between - begin);
+    pieces.push_back(seconds() - between);
+  }
+  std::ranges::sort(whole);
+  std::ranges::sort(pieces);
+  return {whole[kRounds / 2], pieces[kRounds / 2]};
+}
 
 struct Totals {
   std::size_t rays = 0, missed = 0, added = 0, moved = 0, side = 0, material = 0, wrong = 0, whole_wrong = 0,
@@ -52,17 +70,6 @@ struct Rendering {
   compiler::CompiledScene scene;
   Field whole, pieces;
 };
-
-double time_of(const Field& field, const std::vector<Ray>& rays) {
-  std::vector<double> times;
-  for (int i = 0; i < kRounds; ++i) {
-    const double begin = cpu_seconds();
-    runtime::march(field, rays);
-    times.push_back(cpu_seconds() - begin);
-  }
-  std::ranges::sort(times);
-  return times[kRounds / 2];
-}
 
 bool is_hit(const RayHit& hit) { return hit.status == RayHit::Status::Hit; }
 
@@ -85,8 +92,9 @@ std::vector<RayHit> compare(const Rendering& r, const std::vector<Ray>& rays, To
   totals.rays += rays.size();
   totals.whole_counts.merge(whole.counters);
   totals.piece_counts.merge(pieces.counters);
-  totals.whole += time_of(r.whole, rays);
-  totals.pieces += time_of(r.pieces, rays);
+  const Times times = median_times([&] { runtime::march(r.whole, rays); }, [&] { runtime::march(r.pieces, rays); });
+  totals.whole += times.whole;
+  totals.pieces += times.pieces;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const RayHit &a = whole.ray_hits[i], &b = pieces.ray_hits[i];
     if (!is_hit(a) && !is_hit(b)) continue;
@@ -145,27 +153,19 @@ void spawn(const Rendering& r, const std::vector<Ray>& rays, const std::vector<R
   }
 }
 
-// Returns the seconds of a render on one thread.
-double render_time(const compiler::CompiledScene& scene, bool pieces) {
-  runtime::RenderOptions options;
-  options.width = kWidth, options.height = kHeight, options.spp = 16;
-  options.threads = 1;
-  options.pieces = pieces;
-  std::vector<double> times;
-  for (int i = 0; i < kRounds; ++i) {
-    const double begin = process_seconds();
-    runtime::render(scene, options);
-    times.push_back(process_seconds() - begin);
-  }
-  std::ranges::sort(times);
-  return times[kRounds / 2];
-}
-
-// Prints the times of whole pictures.
+// Prints the times of whole pictures on one thread.
 void render(const std::string& path) {
   const compiler::CompiledScene scene = bench::read_scene("bench_pieces", path, true);
-  const double whole = render_time(scene, false), pieces = render_time(scene, true);
-  fmt::print("{:36} whole {:7.2f} s, pieces {:7.2f} s, ratio {:5.2f}\n", path, whole, pieces, whole / pieces);
+  const auto draw = [&](bool pieces) {
+    runtime::RenderOptions options;
+    options.width = kWidth, options.height = kHeight, options.spp = 16;
+    options.threads = 1;
+    options.pieces = pieces;
+    runtime::render(scene, options);
+  };
+  const Times times = median_times([&] { draw(false); }, [&] { draw(true); });
+  fmt::print("{:36} whole {:7.2f} s, pieces {:7.2f} s, ratio {:5.2f}\n", path, times.whole, times.pieces,
+             times.whole / times.pieces);
 }
 
 void run(const std::string& path) {
@@ -177,9 +177,7 @@ void run(const std::string& path) {
   runtime::add_regions(r.whole, r.scene, regions);
   runtime::add_native_code(r.whole, 1e9);
   r.pieces = runtime::make_field(r.scene, r.scene.settings.far);
-  const double begin = cpu_seconds();
   runtime::add_pieces(r.pieces, r.scene, r.scene.settings.far, true);
-  const double built = cpu_seconds() - begin;
   Totals totals;
   std::vector<Ray> rays = camera_rays(r);
   for (int bounce = 0; bounce < 3 && !rays.empty(); ++bounce) {
@@ -191,12 +189,10 @@ void run(const std::string& path) {
   }
   const double n = static_cast<double>(totals.rays);
   fmt::print(
-      "{:36} {:6} pieces {:4} templates ({:.2f} s), {:7} rays: whole {:7.1f} ns, pieces {:7.1f} ns, ratio {:5.2f}; "
+      "{:36} {:6} pieces {:4} templates, {:7} rays: whole {:7.1f} ns, pieces {:7.1f} ns, ratio {:5.2f}; "
       "{:.1f} / {:.1f} evaluations, {:.2f} / {:.2f} % certified; missed {} added {} moved {} side {} material {}; "
-      "wrong {} "
-      "(whole "
-      "{}); worst {:.1e}\n",
-      path, r.scene.pieces.size(), r.pieces.pieces ? r.pieces.pieces->all_templates.size() : 1, built, totals.rays,
+      "wrong {} (whole {}); worst {:.1e}\n",
+      path, r.scene.pieces.size(), r.pieces.pieces ? r.pieces.pieces->templates.size() : 1, totals.rays,
       1e9 * totals.whole / n, 1e9 * totals.pieces / n, totals.whole / totals.pieces,
       static_cast<double>(totals.whole_counts.evaluations) / n,
       static_cast<double>(totals.piece_counts.evaluations) / n,

@@ -18,7 +18,8 @@ namespace {
 // Cost of an evaluation besides the program, multiply-adds: the step of the marcher.
 constexpr double kStepCost = 40;
 
-double surface_of_box(const Box& box) {
+// Half of the surface of a box.
+double half_area(const Box& box) {
   if (box.empty()) return 0;
   const glm::dvec3 d = box.hi - box.lo;
   return d.x * d.y + d.y * d.z + d.z * d.x;
@@ -129,10 +130,10 @@ class Splitting {
     for (const NodeId arm : arms) {
       const Box& box = facts_[arm].box;
       if (!box.finite()) return true;
-      apart += surface_of_box(box) * (cost_[arm] + kStepCost);
+      apart += half_area(box) * (cost_[arm] + kStepCost);
       together += cost_[arm];
     }
-    return apart < surface_of_box(all) * together;
+    return apart < half_area(all) * together;
   }
 
   // Adds a node like number `id` over these children.

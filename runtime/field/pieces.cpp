@@ -17,6 +17,13 @@ bool runs_program(const Field& field) { return !field.cells && !field.regions &&
 
 }  // namespace
 
+void PieceTemplate::evaluate(vm::Points points, std::size_t count, const float* constants, float* out,
+                             RegionScratch& scratch, vm::Workspace& workspace) const {
+  if (!per_lane) return field.evaluate(points, count, out, scratch, workspace);
+  if (native) return native->evaluate_rows(points, count, constants, out);
+  vm::evaluate_rows(code, points, count, constants, out, workspace);
+}
+
 void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native) {
   if (scene.pieces.size() < 2) return;
   constexpr double kEvaluations = 1e7;  // enough for machine code to repay
@@ -31,27 +38,27 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
     vm::ProgramTemplate code = vm::template_of(piece.distance);
     const bool alike = runs_program(own);
     const Key key{code.words, code.doubles, own.lipschitz, magnitude_of(piece.cancellation), piece.convex};
-    const auto next = static_cast<std::uint32_t>(pieces->all_templates.size());
+    const auto next = static_cast<std::uint32_t>(pieces->templates.size());
     const auto [found, is_new] = alike ? known.try_emplace(key, next) : std::pair(known.end(), true);
     if (is_new) {
       PieceTemplate shared{own, piece.convex, false, std::move(code), nullptr};
       shared.field.bound = compiler::Box::everything();
-      pieces->all_templates.push_back(std::move(shared));
-      pieces->templates.push_back(next);
+      pieces->templates.push_back(std::move(shared));
+      pieces->template_of.push_back(next);
     } else {
-      PieceTemplate& shared = pieces->all_templates[found->second];
+      PieceTemplate& shared = pieces->templates[found->second];
       shared.per_lane = true;
       shared.field.cancellation = std::max(shared.field.cancellation, own.cancellation);
-      pieces->templates.push_back(found->second);
+      pieces->template_of.push_back(found->second);
     }
     pieces->fields.push_back(std::move(own));
   }
   pieces->rows.resize(scene.pieces.size());
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
-    if (pieces->all_templates[pieces->templates[i]].per_lane)
+    if (pieces->templates[pieces->template_of[i]].per_lane)
       pieces->rows[i] = vm::constants_of(scene.pieces[i].distance);
   }
-  for (PieceTemplate& shared : pieces->all_templates) {
+  for (PieceTemplate& shared : pieces->templates) {
     if (!native) continue;
     if (shared.per_lane) {
       shared.native = vm::NativeProgram::compile_rows(shared.code);

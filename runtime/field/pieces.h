@@ -22,15 +22,19 @@ struct PieceTemplate {
   bool per_lane;  // lanes hold the constants of their pieces; false if the template has a single piece
   vm::ProgramTemplate code;
   std::shared_ptr<const vm::NativeProgram> native;  // of `code`; null: the interpreter evaluates, with the same bits
+
+  // Computes distances as vm::evaluate_rows() does. `constants` are not read unless per_lane.
+  void evaluate(vm::Points points, std::size_t count, const float* constants, float* out, RegionScratch& scratch,
+                vm::Workspace& workspace) const;
 };
 
 struct Pieces {
   std::vector<Field> fields;                // [piece]
   std::vector<compiler::Box> boxes;         // [piece] around the surface, with the margin of Field::bound
-  std::vector<std::uint32_t> templates;     // [piece] index into all_templates
+  std::vector<std::uint32_t> template_of;   // [piece] index into templates
   std::vector<compiler::ClosedForm> forms;  // [piece]
   std::vector<std::vector<float>> rows;     // [piece] constants of its template; empty unless per_lane
-  std::vector<PieceTemplate> all_templates;
+  std::vector<PieceTemplate> templates;
 };
 
 // Gives the scene's pieces to its field: rays then meet the pieces, not the whole. A scene of one piece stays whole.

@@ -31,7 +31,7 @@ struct RayBlock {
   float slope[kCapacity];
   std::int8_t side[kCapacity];
   std::uint32_t id[kCapacity];
-  std::uint32_t piece[kCapacity];  // Ray::leaves
+  std::uint32_t leaves[kCapacity];
 
   void push(std::uint32_t ray_id, const Ray& ray) {
     const std::size_t i = count++;
@@ -44,7 +44,7 @@ struct RayBlock {
     slope[i] = ray.slope;
     side[i] = static_cast<std::int8_t>(ray.side);
     id[i] = ray_id;
-    piece[i] = ray.leaves;
+    leaves[i] = ray.leaves;
   }
   // Adds the part of a ray from `begin` to `end`, distances from its origin. `side` is known.
   void push_from(std::uint32_t ray_id, glm::dvec3 from, glm::dvec3 along, double begin, double end, int known_side) {

@@ -15,7 +15,7 @@ using compiler::ClosedForm;
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 // Error of t and of places, relative to the largest number: float knows no more of the solid.
 constexpr double kFormError = 4e-6;
-// Cosine, squared, below which a ray barely touches a round surface.
+// Cosine, squared, below which a ray barely touches a surface.
 constexpr double kLeastCosine2 = 1e-4;
 
 // The part of a ray in a solid: empty if begin > end.
@@ -79,7 +79,7 @@ Part part_within(const ClosedForm& form, glm::dvec3 p, glm::dvec3 d) {
       } else if (height > 0) {
         part.end = -kNoEnd;
       }
-      part.grazes = std::abs(speed) < 1e-3;
+      part.grazes = speed * speed < kLeastCosine2 * glm::dot(d, d);
       break;
     }
     case ClosedForm::Shape::None:
@@ -93,8 +93,11 @@ Part part_within(const ClosedForm& form, glm::dvec3 p, glm::dvec3 d) {
 Entrance find_entrance(const ClosedForm& form, glm::dvec3 origin, glm::dvec3 direction) {
   const glm::dvec3 p = form.linear * origin + form.translation, d = form.linear * direction;
   const Part part = part_within(form, p, d);
-  const double slack = kFormError * std::max({1.0, std::abs(part.begin), compiler::largest_part(origin)});
-  if (part.grazes || std::abs(part.end - part.begin) < 4 * slack) return {Meeting::Uncertain, 0, 0};
+  if (part.grazes) return {Meeting::Uncertain, 0, 0};
+  if (part.end == -kNoEnd) return {Meeting::Misses, 0, 0};
+  const double begin = std::isfinite(part.begin) ? std::abs(part.begin) : 0;
+  const double slack = kFormError * std::max({1.0, begin, compiler::largest_part(origin)});
+  if (std::abs(part.end - part.begin) < 4 * slack) return {Meeting::Uncertain, 0, 0};
   if (part.begin > part.end || part.end < -4 * slack) return {Meeting::Misses, 0, 0};
   if (part.begin < 4 * slack) return {Meeting::Uncertain, 0, 0};
   return {Meeting::Enters, part.begin, slack};

@@ -5,13 +5,11 @@
 namespace fathom::runtime {
 namespace {
 
-// Rays in a template's stream that are worth an evaluation, two registers, unless no stream has as many.
+// Points that are worth an evaluation, two registers of them, unless there are fewer everywhere.
 constexpr int kFewRays = 32;
-// The same of proposed roots, each of which has two points.
-constexpr std::size_t kFewProposals = 16;
 // Maximum number of rays under way: each has a root in a template's proposals, or a lane.
-constexpr std::uint32_t kMaxTravellers = PieceProposals::kCapacity;
-static_assert(kMaxTravellers <= Stream<float>::kLanes);
+constexpr std::uint32_t kMaxStates = PieceProposals::kCapacity;
+static_assert(kMaxStates <= Stream<float>::kLanes);
 
 }  // namespace
 
@@ -21,11 +19,11 @@ PieceMarcher::PieceMarcher(const Field& field, const Marching& marching)
       marching_(marching),
       boxes_(pieces_.boxes),
       whole_(field, marching),
-      streams_(pieces_.all_templates.size()),
-      proposals_(pieces_.all_templates.size()),
-      piece_of_(kMaxTravellers),
-      travellers_(kMaxTravellers) {
-  for (std::uint32_t i = kMaxTravellers; i-- > 0;) free_.push_back(i);
+      streams_(pieces_.templates.size()),
+      proposals_(pieces_.templates.size()),
+      piece_of_(kMaxStates),
+      states_(kMaxStates) {
+  for (std::uint32_t i = kMaxStates; i-- > 0;) free_.push_back(i);
 }
 
 void PieceMarcher::begin(RayBlock& rays) {
@@ -35,48 +33,48 @@ void PieceMarcher::begin(RayBlock& rays) {
     ++live_;
     const std::uint32_t number = free_.back();
     free_.pop_back();
-    Traveller& traveller = travellers_[number];
-    set_clipped_ray(traveller.ray, rays, i);
-    traveller.slope = rays.slope[i];
-    traveller.leaves = rays.piece[i];
-    traveller.next = 0;
-    traveller.roots.clear();
-    traveller.reach = traveller.ray.length;
-    traveller.miss = RayHit::Status::Miss;
-    traveller.side = 1;
-    traveller.evaluations = traveller.certified = 0;
-    traveller.instructions = 0;
+    RayState& state = states_[number];
+    set_clipped_ray(state.ray, rays, i);
+    state.slope = rays.slope[i];
+    state.leaves = rays.leaves[i];
+    state.next = 0;
+    state.roots.clear();
+    state.reach = state.ray.length;
+    state.miss = RayHit::Status::Miss;
+    state.side = 1;
+    state.evaluations = state.certified = 0;
+    state.instructions = 0;
     if (rays.side[i] != 1) {
       piece_of_[number] = kNoPiece;
-      whole_.add(number, {traveller.ray.origin, traveller.ray.direction, traveller.ray.length, rays.side[i],
-                          rays.slope[i], 0, kNoPiece});
+      whole_.add(number,
+                 {state.ray.origin, state.ray.direction, state.ray.length, rays.side[i], rays.slope[i], 0, kNoPiece});
       continue;
     }
-    boxes_.find(traveller.ray.origin, traveller.ray.direction, traveller.ray.length, traveller.boxes);
+    boxes_.find(state.ray.origin, state.ray.direction, state.ray.length, state.boxes);
     begin_next_piece(number);
   }
 }
 
 // Has the ray enter the next box that it has to, or ends it.
 void PieceMarcher::begin_next_piece(std::uint32_t number) {
-  Traveller& traveller = travellers_[number];
-  for (; traveller.next < traveller.boxes.size(); ++traveller.next) {
-    const BoxedPiece& box = traveller.boxes[traveller.next];
-    if (static_cast<double>(box.entry) > traveller.reach) break;
-    const bool leaves = box.piece == traveller.leaves;
-    const std::uint32_t shared = pieces_.templates[box.piece];
+  RayState& state = states_[number];
+  for (; state.next < state.boxes.size(); ++state.next) {
+    const BoxedPiece& box = state.boxes[state.next];
+    if (static_cast<double>(box.entry) > state.reach) break;
+    const bool leaves = box.piece == state.leaves;
+    const std::uint32_t shared = pieces_.template_of[box.piece];
     // A ray that leaves a convex solid does not meet it again.
-    if (leaves && pieces_.all_templates[shared].convex) continue;
+    if (leaves && pieces_.templates[shared].convex) continue;
     piece_of_[number] = box.piece;
     Entrance entrance{Meeting::Uncertain, 0, 0};
     if (const compiler::ClosedForm& form = pieces_.forms[box.piece]; form.shape != compiler::ClosedForm::Shape::None)
-      entrance = find_entrance(form, traveller.ray.origin, traveller.ray.direction);
+      entrance = find_entrance(form, state.ray.origin, state.ray.direction);
     const bool enters = entrance.meeting == Meeting::Enters;
-    if (entrance.meeting == Meeting::Misses || (enters && entrance.t - entrance.slack > traveller.reach)) continue;
-    ++traveller.next;
+    if (entrance.meeting == Meeting::Misses || (enters && entrance.t - entrance.slack > state.reach)) continue;
+    ++state.next;
     if (enters && entrance.t + entrance.slack < static_cast<double>(box.exit)) {
       if (!proposals_[shared]) proposals_[shared] = std::make_unique<PieceProposals>(pieces_, shared);
-      return proposals_[shared]->add(number, box.piece, traveller.ray.origin, traveller.ray.direction, entrance.t,
+      return proposals_[shared]->add(number, box.piece, state.ray.origin, state.ray.direction, entrance.t,
                                      entrance.slack);
     }
     return start(number, box);
@@ -86,13 +84,12 @@ void PieceMarcher::begin_next_piece(std::uint32_t number) {
 
 // Has the ray march through a box.
 void PieceMarcher::start(std::uint32_t number, const BoxedPiece& box) {
-  const Traveller& traveller = travellers_[number];
+  const RayState& state = states_[number];
   const double begin = static_cast<double>(box.entry);
-  const double end = std::min(static_cast<double>(box.exit), traveller.reach);
-  stream(pieces_.templates[box.piece])
-      .start({traveller.ray.origin + begin * traveller.ray.direction, traveller.ray.direction, begin, end - begin,
-              number},
-             1, box.piece == traveller.leaves ? traveller.slope : -1.0f);
+  const double end = std::min(static_cast<double>(box.exit), state.reach);
+  stream(pieces_.template_of[box.piece])
+      .start({state.ray.origin + begin * state.ray.direction, state.ray.direction, begin, end - begin, number}, 1,
+             box.piece == state.leaves ? state.slope : -1.0f);
 }
 
 // Ends the template's proposals. Rays whose roots the field does not confirm march.
@@ -101,35 +98,35 @@ void PieceMarcher::answer(std::uint32_t shared) {
   answers.swap(answers_);
   counters_.evaluations += 2 * proposals_[shared]->size();
   proposals_[shared]->answer(answers, workspace_);
-  const std::uint32_t instructions = pieces_.all_templates[shared].code.instructions;
+  const std::uint32_t instructions = pieces_.templates[shared].code.instructions;
   for (const PieceProposals::Answer& each : answers) {
-    Traveller& traveller = travellers_[each.ray];
+    RayState& state = states_[each.ray];
     // A root beyond the ray's end does not count.
-    if (each.confirmed && each.t >= traveller.ray.length) {
+    if (each.confirmed && each.t >= state.ray.length) {
       begin_next_piece(each.ray);
     } else if (each.confirmed) {
       const RayHit found{each.ray, RayHit::Status::Hit, 1, 2, 0, each.width, each.t, 2 * std::uint64_t{instructions}};
       end_piece(found);
     } else {
-      traveller.evaluations += 2;
-      traveller.instructions += 2 * instructions;
-      start(each.ray, traveller.boxes[traveller.next - 1]);
+      state.evaluations += 2;
+      state.instructions += 2 * instructions;
+      start(each.ray, state.boxes[state.next - 1]);
     }
   }
   answers_.swap(answers);
 }
 
 void PieceMarcher::end_piece(const RayHit& found) {
-  Traveller& traveller = travellers_[found.id];
-  traveller.evaluations += found.evaluations;
-  traveller.certified += found.certified;
-  traveller.instructions += found.instructions;
-  traveller.side = found.side;
+  RayState& state = states_[found.id];
+  state.evaluations += found.evaluations;
+  state.certified += found.certified;
+  state.instructions += found.instructions;
+  state.side = found.side;
   if (found.status == RayHit::Status::Hit) {
-    traveller.roots.push_back({found.t, found.width, piece_of_[found.id], found.side});
-    traveller.reach = std::min(traveller.reach, found.t + static_cast<double>(found.width));
-  } else if (found.status != RayHit::Status::Miss && traveller.miss != RayHit::Status::Invalid) {
-    traveller.miss = found.status;
+    state.roots.push_back({found.t, found.width, piece_of_[found.id], found.side});
+    state.reach = std::min(state.reach, found.t + static_cast<double>(found.width));
+  } else if (found.status != RayHit::Status::Miss && state.miss != RayHit::Status::Invalid) {
+    state.miss = found.status;
   }
   if (piece_of_[found.id] == kNoPiece) return end_ray(found.id);
   begin_next_piece(found.id);
@@ -138,26 +135,26 @@ void PieceMarcher::end_piece(const RayHit& found) {
 // Reports the nearest root. Roots that a bracket does not tell from it are those of coincident faces: the piece that
 // comes first is hit.
 void PieceMarcher::end_ray(std::uint32_t number) {
-  Traveller& traveller = travellers_[number];
+  RayState& state = states_[number];
   --live_;
   free_.push_back(number);
-  if (traveller.roots.empty()) {
-    return report(traveller.ray.id, traveller.miss, traveller.side, traveller.evaluations, traveller.certified, 0.0f,
-                  0.0, traveller.instructions);
+  if (state.roots.empty()) {
+    return report(state.ray.id, state.miss, state.side, state.evaluations, state.certified, 0.0f, 0.0,
+                  state.instructions);
   }
-  const Root& nearest = *std::ranges::min_element(traveller.roots, {}, &Root::t);
+  const Root& nearest = *std::ranges::min_element(state.roots, {}, &Root::t);
   const Root* hit = &nearest;
-  for (const Root& root : traveller.roots) {
+  for (const Root& root : state.roots) {
     const bool same = root.t <= nearest.t + static_cast<double>(std::min(root.width, nearest.width));
     if (same && root.piece < hit->piece) hit = &root;
   }
-  report(traveller.ray.id, RayHit::Status::Hit, hit->side, traveller.evaluations, traveller.certified, hit->width,
-         traveller.ray.entry + hit->t, traveller.instructions, hit->piece);
+  report(state.ray.id, RayHit::Status::Hit, hit->side, state.evaluations, state.certified, hit->width,
+         state.ray.entry + hit->t, state.instructions, hit->piece);
 }
 
 Stream<float>& PieceMarcher::stream(std::uint32_t number) {
   if (!streams_[number])
-    streams_[number] = std::make_unique<Stream<float>>(pieces_.all_templates[number].field, marching_,
+    streams_[number] = std::make_unique<Stream<float>>(pieces_.templates[number].field, marching_,
                                                        PieceStream{&pieces_, number, piece_of_.data()});
   return *streams_[number];
 }
@@ -187,26 +184,26 @@ MarchCounters PieceMarcher::counters() const {
 }
 
 void PieceMarcher::step() {
+  if (!advance_parts(kFewRays)) advance_parts(0);
+}
+
+// Advances the parts with at least `few` rays. Returns false if there are none.
+bool PieceMarcher::advance_parts(int few) {
   bool advanced = false;
   for (std::uint32_t i = 0; i < proposals_.size(); ++i) {
-    if (!proposals_[i] || proposals_[i]->size() < kFewProposals) continue;
+    if (!proposals_[i] || proposals_[i]->size() == 0 || 2 * proposals_[i]->size() < static_cast<std::size_t>(few))
+      continue;
     answer(i);
     advanced = true;
   }
   for (const auto& stream : streams_) {
-    while (stream && stream->live() >= kFewRays) {
-      advance(*stream);
-      advanced = true;
-    }
+    if (!stream || stream->empty() || stream->live() < few) continue;
+    advance(*stream);
+    advanced = true;
   }
-  if (whole_.capacity() - whole_.room() >= kFewRays || (!advanced && !whole_.empty())) advance(whole_);
-  if (advanced) return;
-  for (std::uint32_t i = 0; i < proposals_.size(); ++i) {
-    if (proposals_[i] && proposals_[i]->size() > 0) answer(i);
-  }
-  for (const auto& stream : streams_) {
-    if (stream && !stream->empty()) advance(*stream);
-  }
+  if (whole_.empty() || whole_.capacity() - whole_.room() < few) return advanced;
+  advance(whole_);
+  return true;
 }
 
 }  // namespace fathom::runtime

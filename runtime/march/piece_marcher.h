@@ -37,7 +37,7 @@ class PieceMarcher final : public Marcher {
     std::int8_t side;
   };
   // A ray under way. Its number is the id of its part within a piece.
-  struct Traveller {
+  struct RayState {
     ClippedRay ray;
     float slope;
     std::uint32_t leaves;  // piece whose surface the ray leaves outwards, or kNoPiece
@@ -59,6 +59,7 @@ class PieceMarcher final : public Marcher {
   void end_piece(const RayHit& found);
   void end_ray(std::uint32_t number);
   void advance(Marcher& part);
+  bool advance_parts(int few);
   Stream<float>& stream(std::uint32_t number);
 
   const Pieces& pieces_;
@@ -68,9 +69,9 @@ class PieceMarcher final : public Marcher {
   std::vector<std::unique_ptr<Stream<float>>> streams_;     // [template]
   std::vector<std::unique_ptr<PieceProposals>> proposals_;  // [template]
   std::vector<PieceProposals::Answer> answers_;
-  std::vector<std::uint32_t> piece_of_;  // [traveller] the piece that it is in
-  std::vector<Traveller> travellers_;
-  std::vector<std::uint32_t> free_;  // numbers of travellers
+  std::vector<std::uint32_t> piece_of_;  // [state] the piece that it is in
+  std::vector<RayState> states_;
+  std::vector<std::uint32_t> free_;  // numbers of states
   std::vector<RayHit> found_;
 };
 

@@ -5,7 +5,7 @@
 namespace fathom::runtime {
 
 PieceProposals::PieceProposals(const Pieces& pieces, std::uint32_t number)
-    : pieces_(pieces), template_(pieces.all_templates[number]) {
+    : pieces_(pieces), template_(pieces.templates[number]) {
   static_assert(kPoints <= vm::kMaxRowLanes);
   if (template_.per_lane) constants_.resize(vm::constants_in(template_.code) * vm::kRowStride);
 }
@@ -27,14 +27,7 @@ void PieceProposals::add(std::uint32_t ray, std::uint32_t piece, glm::dvec3 orig
 
 void PieceProposals::answer(std::vector<Answer>& answers, vm::Workspace& workspace) {
   const std::size_t count = 2 * rays_.size();
-  const vm::Points points{points_[0], points_[1], points_[2]};
-  if (!template_.per_lane) {
-    template_.field.evaluate(points, count, distance_, scratch_, workspace);
-  } else if (template_.native) {
-    template_.native->evaluate_rows(points, count, constants_.data(), distance_);
-  } else {
-    vm::evaluate_rows(template_.code, points, count, constants_.data(), distance_, workspace);
-  }
+  template_.evaluate({points_[0], points_[1], points_[2]}, count, constants_.data(), distance_, scratch_, workspace);
   answers.clear();
   for (std::size_t i = 0; i < rays_.size(); ++i) {
     const Ray& ray = rays_[i];

@@ -48,20 +48,20 @@ template <class S>
 Stream<S>::Stream(const Field& field, const Marching& marching, const PieceStream& source)
     : Marcher(field),
       source_(source),
-      per_lane_(source.pieces && source.pieces->all_templates[source.number].per_lane),
+      per_lane_(source.pieces && source.pieces->templates[source.number].per_lane),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
       uses_epsilon_(info(rules_.method).uses_epsilon),
       takes_slope_hint_(!uses_epsilon_),
       max_lanes_(field.regions || source.pieces ? static_cast<int>(kLanes) : kBlock),
       use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered &&
-                     (source.pieces ? source.pieces->all_templates[source.number].convex : field.has_convexity())),
+                     (source.pieces ? source.pieces->templates[source.number].convex : field.has_convexity())),
       register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {
   static_assert(kLanes <= vm::kMaxRowLanes);
   if (!source.pieces) return;
   convex_.fill(std::numeric_limits<S>::infinity());
   if (per_lane_) {
-    constants_.resize(vm::constants_in(source.pieces->all_templates[source.number].code) * vm::kRowStride);
+    constants_.resize(vm::constants_in(source.pieces->templates[source.number].code) * vm::kRowStride);
   }
 }
 
@@ -127,15 +127,14 @@ void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
   const auto count = static_cast<std::size_t>(live_);
   const vm::Points points{row[kX], row[kY], row[kZ]};
-  if (per_lane_) {
-    const PieceTemplate& shared = source_.pieces->all_templates[source_.number];
-    if (shared.native) return shared.native->evaluate_rows(points, count, constants_.data(), distance_.data());
-    return vm::evaluate_rows(shared.code, points, count, constants_.data(), distance_.data(), workspace_);
-  }
-  if (use_convexity_ && !source_.pieces) {
+  if (source_.pieces) {
+    source_.pieces->templates[source_.number].evaluate(points, count, constants_.data(), distance_.data(), scratch_,
+                                                       workspace_);
+  } else if (use_convexity_) {
     return field_.evaluate_convex(points, count, distance_.data(), convex_.data(), workspace_);
+  } else {
+    field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   }
-  field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   field_.to_steps(points, count, distance_.data());
   if (field_.regions) {
     for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];

@@ -55,7 +55,7 @@ std::shared_ptr<const NativeProgram> NativeProgram::compile(const VerifiedProgra
 
 std::shared_ptr<const NativeProgram> NativeProgram::compile_rows(const ProgramTemplate& program_template) {
   const std::vector<NativeIsa> isas = available();
-  if (isas.empty() || program_template.words.size() > kMaxCost || program_template.iterates) return nullptr;
+  if (isas.empty() || program_template.words.size() > kMaxCost) return nullptr;
   return emit(record_program(program_template, RecordedResults::DistanceOfRow), isas.front());
 }
 

@@ -238,7 +238,8 @@ std::uint32_t parameters_of(const RecordedFunction& function) {
 std::optional<OperationGraph> make_operation_graph(const RecordedFunction& function, std::size_t max_nodes) {
   Builder builder(max_nodes);
   std::vector<std::uint32_t> inputs;
-  for (std::uint32_t i = 0; i < parameters_of(function); ++i) inputs.push_back(builder.input(i));
+  const std::uint32_t count = parameters_of(function);
+  for (std::uint32_t i = 0; i < count; ++i) inputs.push_back(builder.input(i));
   std::vector<std::uint32_t> results = builder.append(function, inputs);
   if (builder.failed()) return std::nullopt;
   return without_unused(builder.take(std::move(results)));

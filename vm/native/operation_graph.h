@@ -16,8 +16,8 @@ struct OperationNode {
   enum class Kind : std::uint8_t { Input, Constant, Operation };
   Kind kind;
   Operation operation{};
-  std::array<std::uint32_t, 3>
-      operands{};  // earlier nodes; [0] of an Input: a coordinate, or 3 + a constant of a row
+  // Earlier nodes. [0] of an Input: the number of a coordinate, or 3 plus that of a constant in a row.
+  std::array<std::uint32_t, 3> operands{};
   float constant = 0;
 
   std::size_t count() const { return kind == Kind::Operation ? info(operation).operands : 0; }

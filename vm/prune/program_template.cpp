@@ -167,7 +167,6 @@ ProgramTemplate template_of(const VerifiedProgram& program) {
   for (std::size_t at = 0; at < code.size; at += instruction_length(code.words[at])) {
     const std::uint32_t word = code.words[at];
     append_instruction(code, word, at, result.words, result.doubles);
-    result.iterates = result.iterates || row_of(word).has_integers;
     const std::size_t immediates = is_outline(word) ? 0 : immediates_of(word);
     if (immediates > 0) result.quads.push_back(static_cast<std::uint8_t>((immediates + kQuad - 1) / kQuad));
   }

@@ -87,13 +87,10 @@ struct ProgramTemplate {
   std::vector<double> doubles;       // [word] constants of outlines, which belong to the template; else empty
   std::uint32_t locals, max_values, max_points, choices, instructions;
   std::vector<std::uint8_t> quads;  // number of quads of each row of constants, in the order of the instructions
-  bool iterates = false;            // an instruction has a number of iterations; only of template_of()
 
   operator Code() const {
     return {words.data(), doubles.data(), words.size(), locals, max_values, max_points, choices};
   }
-  // True if the other template has the same code.
-  bool operator==(const ProgramTemplate& other) const { return words == other.words && doubles == other.doubles; }
 };
 
 // Returns the template of a whole program without tags. Programs that differ in nothing but constants have one

@@ -67,7 +67,7 @@ TEST_CASE("closed forms: rays enter where the search in double says", "[march][p
   CAPTURE(entered, missed, uncertain);
   CHECK(entered > test::scaled_cases(400));
   CHECK(missed > test::scaled_cases(400));
-  CHECK(uncertain < test::scaled_cases(2400));  // many begin inside
+  CHECK(uncertain < test::scaled_cases(40));
 }
 
 }  // namespace fathom::closed_form_test

@@ -81,7 +81,8 @@ int wrong_ones(const Field& field, const std::vector<Ray>& rays) {
                             exact = march(field, rays, {.method = Method::Certified}).ray_hits;
   int wrong = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const double slack = 2e-5 * std::max(1.0, exact[i].t) + static_cast<double>(found[i].width);
+    // Float leaves roots that are known to kTolerance (runtime/march/tiered-inl.h).
+    const double slack = 0x1p-16 * std::max(1.0, exact[i].t) + static_cast<double>(found[i].width);
     wrong += is_hit(found[i]) != is_hit(exact[i]) || found[i].side != exact[i].side ||
              (is_hit(found[i]) && std::abs(found[i].t - exact[i].t) > slack);
   }
@@ -96,7 +97,7 @@ TEST_CASE("pieces: rays end where the search in double of the whole field ends t
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const compiler::CompiledScene scene = compiled(scene_text(seed));
     const Field field = field_of(scene, seed % 2 == 1);
-    for (const PieceTemplate& each : field.pieces->all_templates) shared += each.per_lane;
+    for (const PieceTemplate& each : field.pieces->templates) shared += each.per_lane;
     for (RaySet& set : make_ray_sets(scene, field, test::scaled_cases(240), seed)) {
       std::erase_if(set.rays, [&](const Ray& ray) {
         std::uint64_t instructions = 0;
@@ -156,7 +157,7 @@ TEST_CASE("pieces: a picture has the same bits for any threads and tiles, and th
   const compiler::CompiledScene scene = compiled(scene_text(5) + "background [1, 0.9, 0.8]\n");
   RenderOptions options;
   options.width = 48, options.height = 32, options.spp = 8;
-  // Of every pixel, and the sum of all.
+  // Returns the sum of all pixels, then each pixel.
   const auto picture = [&] {
     const RenderResult result = render(scene, options);
     std::vector<double> all(1);
@@ -172,7 +173,7 @@ TEST_CASE("pieces: a picture has the same bits for any threads and tiles, and th
   const std::vector<double> one = picture();
   options.threads = 3, options.tile = 7;
   CHECK((one == picture()));
-  CHECK(one[0] == Approx(whole[0]).epsilon(0.01));
+  CHECK(one[0] == Approx(whole[0]).epsilon(1e-4));
 }
 
 TEST_CASE("pieces: a ray meets no box that begins beyond its hit", "[march][pieces]") {
