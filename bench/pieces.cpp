@@ -176,7 +176,7 @@ void run(const std::string& path) {
   regions.evaluations = 1e9;
   runtime::add_regions(r.whole, r.scene, regions);
   runtime::add_native_code(r.whole, 1e9);
-  r.pieces = runtime::make_field(r.scene, r.scene.settings.far);
+  r.pieces = r.whole;
   runtime::add_pieces(r.pieces, r.scene, r.scene.settings.far, true);
   Totals totals;
   std::vector<Ray> rays = camera_rays(r);

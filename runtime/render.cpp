@@ -105,7 +105,7 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
                         Lights(scene, options.environment),
                         {},
                         true};
-  if (settings.regions && !settings.pieces) {
+  if (settings.regions) {
     Settings share = settings;
     share.spp = samples_with(scene, settings, options);
     RegionOptions regions = region_options(share);
