@@ -175,28 +175,19 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       cells.rest_lipschitz};
 }
 
-// Compiles the pieces of a scene: `optimised` is the scene after the passes, with Paint.
+// Compiles the pieces of a scene, none if it is one piece: `optimised` is the scene after the passes, with Paint.
 std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised, bool painted, const Source& source,
                                                          Diagnostics& diagnostics, const CompileOptions& options) {
-  Pieces parts = split(optimised);
-  Scene all{std::move(parts.graph), 0};
-  const bool single = parts.nodes.size() == 1;
-  all.root = single ? parts.nodes[0] : all.graph.add(Kind::Union, {}, parts.nodes);
-  const auto pieces_of = [&](const Scene& scene) {
-    const auto children = scene.graph.children(scene.root);
-    return single ? std::vector{scene.root} : std::vector(children.begin(), children.end());
-  };
-  Scene surface = fold(affine(all)), distance = fold(affine(strip(surface)));
-  const std::vector<NodeId> surfaces = pieces_of(surface), distances = pieces_of(distance);
-  const std::vector<NodeFacts> known = analyse(distance.graph);
   std::vector<CompiledPiece> pieces;
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    distance.root = distances[i];
-    surface.root = surfaces[i];
+  const Pieces parts = split(optimised);
+  if (parts.nodes.size() < 2) return pieces;
+  for (const NodeId node : parts.nodes) {
+    const Scene surface = fold(affine(part_of(parts.graph, node))), distance = fold(affine(strip(surface)));
+    const std::vector<NodeFacts> known = analyse(distance.graph);
     auto field = compile_field(surface, distance, known, painted, source, diagnostics, options);
     if (!field) return std::nullopt;
-    pieces.push_back(
-        {*std::move(field), is_convex(distance.graph, distances[i]), closed_form(distance.graph, distances[i])});
+    pieces.push_back({*std::move(field), is_convex(distance.graph, distance.root),
+                      closed_form(distance.graph, distance.root)});
   }
   return pieces;
 }

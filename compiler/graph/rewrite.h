@@ -1,6 +1,7 @@
 // The loop of every pass: rebuilds the nodes that the root reaches, children before parents, by one function.
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "compiler/graph/graph.h"
@@ -39,6 +40,26 @@ Scene rewrite(const Scene& in, const Make& make) {
 // Adds the node unchanged, with its rebuilt children.
 inline NodeId keep(const Scene& in, Graph& out, NodeId id, const std::vector<NodeId>& children) {
   return out.add(in.graph.kind(id), in.graph.params(id), children, in.graph.origin(id));
+}
+
+// Returns a node of a graph with what it reaches, in time proportional to that.
+inline Scene part_of(const Graph& graph, NodeId root) {
+  std::map<NodeId, NodeId> rebuilt;  // children before parents
+  std::vector<NodeId> waiting = {root}, children;
+  while (!waiting.empty()) {
+    const NodeId id = waiting.back();
+    waiting.pop_back();
+    if (!rebuilt.emplace(id, 0).second) continue;
+    for (const NodeId child : graph.children(id)) waiting.push_back(child);
+  }
+  Scene out;
+  for (auto& [id, copy] : rebuilt) {
+    children.clear();
+    for (const NodeId child : graph.children(id)) children.push_back(rebuilt.at(child));
+    copy = out.graph.add(graph.kind(id), graph.params(id), children, graph.origin(id));
+  }
+  out.root = rebuilt.at(root);
+  return out;
 }
 
 }  // namespace fathom::compiler

@@ -15,8 +15,9 @@
 namespace fathom::compiler {
 namespace {
 
-// Cost of an evaluation besides the program, multiply-adds: the step of the marcher.
-constexpr double kStepCost = 40;
+// Cost of a piece in a ray's way besides its program, multiply-adds of each evaluation (bench/pieces.cpp): the box,
+// the start, the step of the marcher, the end.
+constexpr double kStepCost = 300;
 
 // Half of the surface of a box.
 double half_area(const Box& box) {
@@ -45,7 +46,9 @@ class Splitting {
     for (NodeId id = 0; id <= scene_.root; ++id) {
       if (reached[id]) visit(id);
     }
-    return {std::move(out_), std::move(arms_[scene_.root])};
+    std::vector<NodeId> pieces = std::move(arms_[scene_.root]);
+    if (!is_worth(pieces, kStepCost)) pieces = {whole_[scene_.root]};  // rays among pieces pay for the tree of boxes
+    return {std::move(out_), std::move(pieces)};
   }
 
  private:
@@ -64,7 +67,7 @@ class Splitting {
       case Kind::Union: {
         std::vector<NodeId> arms;
         for (const NodeId operand : operands) arms.insert(arms.end(), arms_[operand].begin(), arms_[operand].end());
-        return is_worth(id, arms) ? arms : std::vector<NodeId>{};
+        return is_worth(arms, 0) ? arms : std::vector<NodeId>{};
       }
       case Kind::Transform:
       case Kind::Scaled:
@@ -124,16 +127,25 @@ class Splitting {
     return kept;
   }
 
-  bool is_worth(NodeId id, std::span<const NodeId> arms) const {
-    const Box& all = facts_[whole_[id]].box;
-    double apart = 0, together = kStepCost;
+  // True if rays are faster among the arms than in their union, at a `cost` besides the arms'. Arms with a proved
+  // bound leave those without: their rays keep the proof.
+  bool is_worth(std::span<const NodeId> arms, double cost) const {
+    if (arms.size() < 2) return true;
+    const auto certified = [this](NodeId arm) { return facts_[arm].certified; };
+    const std::ptrdiff_t proved = std::ranges::count_if(arms, certified);
+    if (proved > 0 && proved < std::ssize(arms)) return true;
+    Box all;
+    for (const NodeId arm : arms) {
+      if (facts_[arm].box.finite()) all = unite(all, facts_[arm].box);
+    }
+    double apart = cost, together = kStepCost;
     for (const NodeId arm : arms) {
       const Box& box = facts_[arm].box;
-      if (!box.finite()) return true;
-      apart += half_area(box) * (cost_[arm] + kStepCost);
+      const double share = box.finite() ? half_area(box) / std::max(half_area(all), 1e-300) : 1;
+      apart += std::min(1.0, share) * (cost_[arm] + kStepCost);
       together += cost_[arm];
     }
-    return apart < half_area(all) * together;
+    return apart < together;
   }
 
   // Adds a node like number `id` over these children.

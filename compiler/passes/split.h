@@ -20,10 +20,10 @@ struct Pieces {
 // of a union distribute over its arms: (a | b) - c = (a - c) | (b - c), with the same bits, because rounding is
 // monotone. A cut that does not reach an arm is left out of it, which keeps signs but not distances.
 //
-// A union whose arms are cheap and lie in each other's boxes stays one piece: it is divided if rays that meet boxes
-// in proportion to their surface (Goldsmith and Salmon, "Automatic Creation of Object Hierarchies for Ray Tracing",
-// 1987) then evaluate less. A cut or a limit that would copy more than four times the scene's nodes stays one piece,
-// too.
+// A union whose arms are cheap or lie in each other's boxes stays one piece: it is divided if rays that meet boxes in
+// proportion to their surface (Goldsmith and Salmon, "Automatic Creation of Object Hierarchies for Ray Tracing", 1987)
+// then cost less, or if some arms alone have a proved Lipschitz constant. A cut or a limit that would copy more than
+// four times the scene's nodes stays one piece, too.
 Pieces split(const Scene& scene);
 
 // True if the node's value is a convex function of the point, as far as the node table shows.

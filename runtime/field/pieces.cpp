@@ -30,10 +30,11 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
   auto pieces = std::make_shared<Pieces>();
   using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, double, int, bool>;
   std::map<Key, std::uint32_t> known;
+  std::vector<compiler::Box> boxes;
   for (const compiler::CompiledPiece& piece : scene.pieces) {
     Field own = make_field(piece, extent_of(scene), far);
     own.convex = false;  // the radius of convexity is for unions
-    pieces->boxes.push_back(own.bound);
+    boxes.push_back(own.bound);
     pieces->forms.push_back(piece.form);
     vm::ProgramTemplate code = vm::template_of(piece.distance);
     const bool alike = runs_program(own);
@@ -41,7 +42,7 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
     const auto next = static_cast<std::uint32_t>(pieces->templates.size());
     const auto [found, is_new] = alike ? known.try_emplace(key, next) : std::pair(known.end(), true);
     if (is_new) {
-      PieceTemplate shared{own, piece.convex, false, std::move(code), nullptr};
+      PieceTemplate shared{own, piece.convex, alike, false, std::move(code), nullptr};
       shared.field.bound = compiler::Box::everything();
       pieces->templates.push_back(std::move(shared));
       pieces->template_of.push_back(next);
@@ -53,6 +54,7 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
     }
     pieces->fields.push_back(std::move(own));
   }
+  pieces->boxes = PieceBoxes(boxes);
   pieces->rows.resize(scene.pieces.size());
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
     if (pieces->templates[pieces->template_of[i]].per_lane)

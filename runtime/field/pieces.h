@@ -9,6 +9,7 @@
 #include "compiler/geometry/box.h"
 #include "compiler/scene/compiled_scene.h"
 #include "runtime/field/field.h"
+#include "runtime/field/piece_boxes.h"
 #include "vm/native/native_program.h"
 #include "vm/prune/program_template.h"
 
@@ -17,9 +18,10 @@ namespace fathom::runtime {
 // Pieces whose programs differ in nothing but constants, and whose float errors are alike, are evaluated side by
 // side.
 struct PieceTemplate {
-  Field field;    // what its pieces share; `bound` is everything, `cancellation` the largest
-  bool convex;    // its pieces' distances are convex functions
-  bool per_lane;  // lanes hold the constants of their pieces; false if the template has a single piece
+  Field field;        // what its pieces share; `bound` is everything, `cancellation` the largest
+  bool convex;        // its pieces' distances are convex functions
+  bool runs_program;  // its value is its program's: without regions, cells and far levels
+  bool per_lane;      // lanes hold the constants of their pieces; false if the template has a single piece
   vm::ProgramTemplate code;
   std::shared_ptr<const vm::NativeProgram> native;  // of `code`; null: the interpreter evaluates, with the same bits
 
@@ -30,7 +32,7 @@ struct PieceTemplate {
 
 struct Pieces {
   std::vector<Field> fields;                // [piece]
-  std::vector<compiler::Box> boxes;         // [piece] around the surface, with the margin of Field::bound
+  PieceBoxes boxes;                         // around the surfaces, with the margin of Field::bound
   std::vector<std::uint32_t> template_of;   // [piece] index into templates
   std::vector<compiler::ClosedForm> forms;  // [piece]
   std::vector<std::vector<float>> rows;     // [piece] constants of its template; empty unless per_lane

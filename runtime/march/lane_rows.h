@@ -37,6 +37,7 @@ enum LaneRow : std::uint8_t {
   kDy,
   kDz,
   kTMax,
+  kBefore,  // way of the ray to that origin: what a root's error is relative to
   // 0 until the first evaluation if the ray's side is unknown.
   kSide,
   kPhase,  // a LanePhase

@@ -15,7 +15,7 @@ constexpr std::size_t kMaxSearchEvaluations = 2048;
 
 }  // namespace
 
-int Marcher::capacity_for(const Field& field) { return field.regions ? kMaxRays : kMaxRays / 2; }
+int Marcher::capacity_for(const Field& field) { return field.regions || field.pieces ? kMaxRays : kMaxRays / 2; }
 
 // With regions every point has its own program, so that evaluating many points at once gains nothing.
 Marcher::Marcher(const Field& field)

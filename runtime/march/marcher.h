@@ -42,7 +42,9 @@ class Marcher {
   int capacity() const { return capacity_; }
   static int capacity_for(const Field& field);
   int room() const { return static_cast<int>(max_waiting_ - waiting_.count); }
-  bool empty() const { return live_ == 0 && waiting_.count == 0 && searched_.empty(); }
+  // Number of rays under way.
+  std::size_t under_way() const { return static_cast<std::size_t>(live_) + waiting_.count + searched_.size(); }
+  bool empty() const { return under_way() == 0; }
 
   // Requires room() > 0.
   void add(std::uint32_t id, const Ray& ray) {

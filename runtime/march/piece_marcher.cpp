@@ -6,10 +6,11 @@ namespace fathom::runtime {
 namespace {
 
 // Points that are worth an evaluation, two registers of them, unless there are fewer everywhere.
-constexpr int kFewRays = 32;
-// Maximum number of rays under way: each has a root in a template's proposals, or a lane.
-constexpr std::uint32_t kMaxStates = PieceProposals::kCapacity;
-static_assert(kMaxStates <= Stream<float>::kLanes);
+constexpr std::size_t kFewRays = 32;
+// Maximum number of rays under way: each has a lane.
+constexpr std::uint32_t kMaxStates = PieceStream::kLanes;
+// Number of no piece, for a ray in the whole field.
+constexpr std::int32_t kWhole = -1;
 
 }  // namespace
 
@@ -17,11 +18,11 @@ PieceMarcher::PieceMarcher(const Field& field, const Marching& marching)
     : Marcher(field),
       pieces_(*field.pieces),
       marching_(marching),
-      boxes_(pieces_.boxes),
       whole_(field, marching),
+      searches_(field),
       streams_(pieces_.templates.size()),
+      own_(pieces_.templates.size()),
       proposals_(pieces_.templates.size()),
-      piece_of_(kMaxStates),
       states_(kMaxStates) {
   for (std::uint32_t i = kMaxStates; i-- > 0;) free_.push_back(i);
 }
@@ -37,83 +38,98 @@ void PieceMarcher::begin(RayBlock& rays) {
     set_clipped_ray(state.ray, rays, i);
     state.slope = rays.slope[i];
     state.leaves = rays.leaves[i];
-    state.next = 0;
     state.roots.clear();
     state.reach = state.ray.length;
     state.miss = RayHit::Status::Miss;
     state.side = 1;
     state.evaluations = state.certified = 0;
     state.instructions = 0;
-    if (rays.side[i] != 1) {
-      piece_of_[number] = kNoPiece;
-      whole_.add(number,
-                 {state.ray.origin, state.ray.direction, state.ray.length, rays.side[i], rays.slope[i], 0, kNoPiece});
-      continue;
+    if (rays.side[i] == 1) {
+      pieces_.boxes.begin(state.ray.origin, state.ray.direction, state.ray.length, state.visit);
+      ready_.push_back(number);
+    } else {
+      state.box.piece = kWhole;
+      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, rays.side[i], state.slope});
     }
-    boxes_.find(state.ray.origin, state.ray.direction, state.ray.length, state.boxes);
-    begin_next_piece(number);
   }
 }
 
 // Has the ray enter the next box that it has to, or ends it.
 void PieceMarcher::begin_next_piece(std::uint32_t number) {
   RayState& state = states_[number];
-  for (; state.next < state.boxes.size(); ++state.next) {
-    const BoxedPiece& box = state.boxes[state.next];
-    if (static_cast<double>(box.entry) > state.reach) break;
-    const bool leaves = box.piece == state.leaves;
-    const std::uint32_t shared = pieces_.template_of[box.piece];
+  while (pieces_.boxes.next(state.visit, state.reach, state.box)) {
+    const auto piece = static_cast<std::uint32_t>(state.box.piece);
+    const std::uint32_t shared = pieces_.template_of[piece];
     // A ray that leaves a convex solid does not meet it again.
-    if (leaves && pieces_.templates[shared].convex) continue;
-    piece_of_[number] = box.piece;
-    Entrance entrance{Meeting::Uncertain, 0, 0};
-    if (const compiler::ClosedForm& form = pieces_.forms[box.piece]; form.shape != compiler::ClosedForm::Shape::None)
-      entrance = find_entrance(form, state.ray.origin, state.ray.direction);
-    const bool enters = entrance.meeting == Meeting::Enters;
-    if (entrance.meeting == Meeting::Misses || (enters && entrance.t - entrance.slack > state.reach)) continue;
-    ++state.next;
-    if (enters && entrance.t + entrance.slack < static_cast<double>(box.exit)) {
-      if (!proposals_[shared]) proposals_[shared] = std::make_unique<PieceProposals>(pieces_, shared);
-      return proposals_[shared]->add(number, box.piece, state.ray.origin, state.ray.direction, entrance.t,
-                                     entrance.slack);
-    }
-    return start(number, box);
+    if (piece == state.leaves && pieces_.templates[shared].convex) continue;
+    if (pieces_.forms[piece].shape == compiler::ClosedForm::Shape::None) return start(number);
+    if (!proposals_[shared]) proposals_[shared] = std::make_unique<PieceProposals>(pieces_, shared);
+    if (proposals_[shared]->size() == PieceProposals::kCapacity) answer(shared);
+    return proposals_[shared]->add(number, state.box.piece, state.ray.origin, state.ray.direction,
+                                   static_cast<double>(state.box.exit), state.reach);
   }
   end_ray(number);
 }
 
-// Has the ray march through a box.
-void PieceMarcher::start(std::uint32_t number, const BoxedPiece& box) {
+// Has the ray march through its box.
+void PieceMarcher::start(std::uint32_t number) {
   const RayState& state = states_[number];
-  const double begin = static_cast<double>(box.entry);
-  const double end = std::min(static_cast<double>(box.exit), state.reach);
-  stream(pieces_.template_of[box.piece])
-      .start({state.ray.origin + begin * state.ray.direction, state.ray.direction, begin, end - begin, number}, 1,
-             box.piece == state.leaves ? state.slope : -1.0f);
+  const auto piece = static_cast<std::uint32_t>(state.box.piece);
+  const std::uint32_t shared = pieces_.template_of[piece];
+  const double begin = static_cast<double>(state.box.entry),
+               end = std::min(static_cast<double>(state.box.exit), state.reach);
+  const float slope = piece == state.leaves ? state.slope : -1.0f;
+  if (pieces_.templates[shared].runs_program) {
+    if (!streams_[shared]) streams_[shared] = std::make_unique<PieceStream>(pieces_, shared, marching_);
+    return streams_[shared]->start(number, state.box.piece, state.ray.origin, state.ray.direction, begin, end, slope);
+  }
+  if (!own_[shared]) own_[shared] = std::make_unique<Stream<float>>(pieces_.fields[piece], marching_);
+  own_[shared]->add(number, {state.ray.origin, state.ray.direction, end, 1, slope, state.box.entry});
 }
 
 // Ends the template's proposals. Rays whose roots the field does not confirm march.
 void PieceMarcher::answer(std::uint32_t shared) {
-  std::vector<PieceProposals::Answer> answers;
-  answers.swap(answers_);
-  counters_.evaluations += 2 * proposals_[shared]->size();
-  proposals_[shared]->answer(answers, workspace_);
-  const std::uint32_t instructions = pieces_.templates[shared].code.instructions;
-  for (const PieceProposals::Answer& each : answers) {
+  counters_.evaluations += proposals_[shared]->answer(answers_, workspace_);
+  const std::uint64_t instructions = 2 * pieces_.templates[shared].code.instructions;
+  for (const PieceProposals::Answer& each : answers_) {
     RayState& state = states_[each.ray];
-    // A root beyond the ray's end does not count.
-    if (each.confirmed && each.t >= state.ray.length) {
-      begin_next_piece(each.ray);
-    } else if (each.confirmed) {
-      const RayHit found{each.ray, RayHit::Status::Hit, 1, 2, 0, each.width, each.t, 2 * std::uint64_t{instructions}};
-      end_piece(found);
+    state.evaluations += each.evaluated ? 2 : 0;
+    state.instructions += each.evaluated ? instructions : 0;
+    if (each.result == PieceProposals::Result::March) {
+      start(each.ray);
+    } else if (each.result == PieceProposals::Result::Misses || each.t >= state.ray.length) {
+      ready_.push_back(each.ray);
     } else {
-      state.evaluations += 2;
-      state.instructions += 2 * instructions;
-      start(each.ray, state.boxes[state.next - 1]);
+      end_piece({each.ray, RayHit::Status::Hit, 1, 0, 0, each.width, each.t, 0});
     }
   }
-  answers_.swap(answers);
+}
+
+void PieceMarcher::advance_stream(std::uint32_t shared, std::size_t few) {
+  ended_.clear();
+  streams_[shared]->advance(few, ended_, counters_, workspace_);
+  const std::uint64_t instructions = pieces_.templates[shared].code.instructions;
+  for (const PieceStream::Ended& each : ended_) {
+    const RayState& state = states_[each.ray];
+    const double begin = static_cast<double>(state.box.entry);
+    if (each.verdict == LaneVerdict::Certify) {
+      const ClippedRay part{state.ray.origin + begin * state.ray.direction, state.ray.direction, begin, each.rest.end,
+                            each.ray};
+      searches_.certify_from(pieces_.fields[static_cast<std::size_t>(state.box.piece)], part, 1, each.rest,
+                             each.evaluations, each.evaluations * instructions);
+      continue;
+    }
+    const bool hit = each.verdict == LaneVerdict::Hit;
+    const RayHit::Status miss = each.verdict == LaneVerdict::Invalid ? RayHit::Status::Invalid : RayHit::Status::Miss;
+    end_piece({each.ray, hit ? RayHit::Status::Hit : miss, 1, each.evaluations, 0, hit ? each.width : 0.0f,
+               begin + static_cast<double>(each.root), each.evaluations * instructions});
+  }
+}
+
+void PieceMarcher::advance(Marcher& part) {
+  part.advance();
+  part.take_ray_hits(found_);
+  for (const RayHit& found : found_) end_piece(found);
 }
 
 void PieceMarcher::end_piece(const RayHit& found) {
@@ -123,13 +139,13 @@ void PieceMarcher::end_piece(const RayHit& found) {
   state.instructions += found.instructions;
   state.side = found.side;
   if (found.status == RayHit::Status::Hit) {
-    state.roots.push_back({found.t, found.width, piece_of_[found.id], found.side});
+    state.roots.push_back({found.t, found.width, static_cast<std::uint32_t>(state.box.piece), found.side});
     state.reach = std::min(state.reach, found.t + static_cast<double>(found.width));
   } else if (found.status != RayHit::Status::Miss && state.miss != RayHit::Status::Invalid) {
     state.miss = found.status;
   }
-  if (piece_of_[found.id] == kNoPiece) return end_ray(found.id);
-  begin_next_piece(found.id);
+  if (state.box.piece == kWhole) return end_ray(found.id);
+  ready_.push_back(found.id);
 }
 
 // Reports the nearest root. Roots that a bracket does not tell from it are those of coincident faces: the piece that
@@ -152,20 +168,7 @@ void PieceMarcher::end_ray(std::uint32_t number) {
          state.ray.entry + hit->t, state.instructions, hit->piece);
 }
 
-Stream<float>& PieceMarcher::stream(std::uint32_t number) {
-  if (!streams_[number])
-    streams_[number] = std::make_unique<Stream<float>>(pieces_.templates[number].field, marching_,
-                                                       PieceStream{&pieces_, number, piece_of_.data()});
-  return *streams_[number];
-}
-
-void PieceMarcher::advance(Marcher& part) {
-  part.advance();
-  part.take_ray_hits(found_);
-  for (const RayHit& found : found_) end_piece(found);
-}
-
-// Rays and where they ended are counted here, evaluations by the streams.
+// Rays and where they ended are counted here, evaluations by the parts.
 MarchCounters PieceMarcher::counters() const {
   MarchCounters all = counters_;
   const auto add = [&](const Marcher& part) {
@@ -177,33 +180,34 @@ MarchCounters PieceMarcher::counters() const {
     if (of.invalid_at) all.note_invalid(*of.invalid_at);
   };
   add(whole_);
-  for (const auto& stream : streams_) {
+  add(searches_);
+  for (const auto& stream : own_) {
     if (stream) add(*stream);
   }
   return all;
 }
 
 void PieceMarcher::step() {
-  if (!advance_parts(kFewRays)) advance_parts(0);
+  while (!ready_.empty()) {
+    const std::uint32_t number = ready_.back();
+    ready_.pop_back();
+    begin_next_piece(number);
+  }
+  if (!advance_parts(kFewRays)) advance_parts(1);
 }
 
 // Advances the parts with at least `few` rays. Returns false if there are none.
-bool PieceMarcher::advance_parts(int few) {
+bool PieceMarcher::advance_parts(std::size_t few) {
   bool advanced = false;
-  for (std::uint32_t i = 0; i < proposals_.size(); ++i) {
-    if (!proposals_[i] || proposals_[i]->size() == 0 || 2 * proposals_[i]->size() < static_cast<std::size_t>(few))
-      continue;
-    answer(i);
-    advanced = true;
+  const auto has_rays = [few](const Marcher& part) { return part.under_way() >= few; };
+  for (std::uint32_t i = 0; i < streams_.size(); ++i) {
+    if (proposals_[i] && proposals_[i]->size() >= few) answer(i), advanced = true;
+    if (streams_[i] && streams_[i]->live() >= few) advance_stream(i, few), advanced = true;
+    if (own_[i] && has_rays(*own_[i])) advance(*own_[i]), advanced = true;
   }
-  for (const auto& stream : streams_) {
-    if (!stream || stream->empty() || stream->live() < few) continue;
-    advance(*stream);
-    advanced = true;
-  }
-  if (whole_.empty() || whole_.capacity() - whole_.room() < few) return advanced;
-  advance(whole_);
-  return true;
+  if (has_rays(whole_)) advance(whole_), advanced = true;
+  if (has_rays(searches_)) advance(searches_), advanced = true;
+  return advanced;
 }
 
 }  // namespace fathom::runtime

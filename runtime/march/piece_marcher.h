@@ -13,12 +13,12 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/field/piece_boxes.h"
 #include "runtime/field/pieces.h"
-#include "runtime/march/closed_form.h"
 #include "runtime/march/marcher.h"
 #include "runtime/march/method.h"
-#include "runtime/march/piece_boxes.h"
 #include "runtime/march/piece_proposals.h"
+#include "runtime/march/piece_stream.h"
 #include "runtime/march/stream.h"
 
 namespace fathom::runtime {
@@ -41,8 +41,8 @@ class PieceMarcher final : public Marcher {
     ClippedRay ray;
     float slope;
     std::uint32_t leaves;  // piece whose surface the ray leaves outwards, or kNoPiece
-    std::vector<BoxedPiece> boxes;
-    std::size_t next;         // of `boxes`
+    BoxedPiece box;        // of the piece that the ray is in; if it follows the whole field, of no piece
+    PieceBoxes::Visit visit;
     std::vector<Root> roots;  // in the order in which they were found
     double reach;             // no root beyond matters
     RayHit::Status miss;      // status without a root
@@ -50,28 +50,39 @@ class PieceMarcher final : public Marcher {
     std::uint32_t evaluations, certified;
     std::uint64_t instructions;
   };
+  // Searches in double.
+  class Searches final : public Marcher {
+   public:
+    using Marcher::certify_from;
+    using Marcher::Marcher;
+
+   private:
+    void begin(RayBlock&) override {}
+    void step() override {}
+  };
 
   void begin(RayBlock& rays) override;
   void step() override;
   void begin_next_piece(std::uint32_t number);
-  void start(std::uint32_t number, const BoxedPiece& box);
+  void start(std::uint32_t number);
   void answer(std::uint32_t shared);
+  void advance_stream(std::uint32_t shared, std::size_t few);
+  void advance(Marcher& part);
+  bool advance_parts(std::size_t few);
   void end_piece(const RayHit& found);
   void end_ray(std::uint32_t number);
-  void advance(Marcher& part);
-  bool advance_parts(int few);
-  Stream<float>& stream(std::uint32_t number);
 
   const Pieces& pieces_;
   const Marching marching_;
-  const PieceBoxes boxes_;
   Stream<float> whole_;
-  std::vector<std::unique_ptr<Stream<float>>> streams_;     // [template]
+  Searches searches_;
+  std::vector<std::unique_ptr<PieceStream>> streams_;       // [template]
+  std::vector<std::unique_ptr<Stream<float>>> own_;         // [template] of a piece with a field of its own
   std::vector<std::unique_ptr<PieceProposals>> proposals_;  // [template]
-  std::vector<PieceProposals::Answer> answers_;
-  std::vector<std::uint32_t> piece_of_;  // [state] the piece that it is in
   std::vector<RayState> states_;
-  std::vector<std::uint32_t> free_;  // numbers of states
+  std::vector<std::uint32_t> free_, ready_;  // numbers of states: unused, and before their next piece
+  std::vector<PieceProposals::Answer> answers_;
+  std::vector<PieceStream::Ended> ended_;
   std::vector<RayHit> found_;
 };
 

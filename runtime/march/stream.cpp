@@ -2,10 +2,14 @@
 
 #include <algorithm>
 
-#include "runtime/field/pieces.h"
-
 namespace fathom::runtime {
 namespace {
+
+// Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
+// in tiered-inl.h).
+constexpr double kBracketMargin = 0x1p-14;
+
+}  // namespace
 
 template <class S>
 LaneRules<S> make_rules(const Field& field, const Marching& marching) {
@@ -26,17 +30,25 @@ LaneRules<S> make_rules(const Field& field, const Marching& marching) {
   return rules;
 }
 
+template <class S>
+RayInterval undecided_interval(const Lanes<S>& lanes, std::size_t i, double length, float band) {
+  const auto number = [&](auto row) { return static_cast<double>(lanes.row[row][i]); };
+  RayInterval interval{number(kT), length, 0};
+  if (number(kPhase) == static_cast<double>(LanePhase::Refine)) {
+    const double slack = std::max(kBracketMargin * number(kTHi), static_cast<double>(band));
+    interval.begin = std::max(0.0, number(kTLo) - slack);
+    interval.hint = number(kTHi) + slack;
+  }
+  return interval;
+}
+
+namespace {
+
 // Returns an S that is not above `value`, and below by at most a unit in its last place.
 template <class S>
 S round_down(double value) {
   return static_cast<S>(sizeof(S) == sizeof(float) ? value * (1 - 0x1p-24) : value);
 }
-
-// Samples to accept after the first attempt to cross that met no surface.
-constexpr double kFirstBackoff = 2;
-// Margin around the bracket of a vague root, relative to t, in which the search looks for the root first (kTolerance
-// in tiered-inl.h).
-constexpr double kBracketMargin = 0x1p-14;
 
 // Number of lanes for a field without regions: a block of the machine.
 constexpr int kBlock = 256;
@@ -45,80 +57,48 @@ static_assert(Lanes<float>::kCapacity <= kMaxPoints);
 }  // namespace
 
 template <class S>
-Stream<S>::Stream(const Field& field, const Marching& marching, const PieceStream& source)
+Stream<S>::Stream(const Field& field, const Marching& marching)
     : Marcher(field),
-      source_(source),
-      per_lane_(source.pieces && source.pieces->templates[source.number].per_lane),
       rules_(make_rules<S>(field, marching)),
       lanes_(new Lanes<S>()),
       uses_epsilon_(info(rules_.method).uses_epsilon),
       takes_slope_hint_(!uses_epsilon_),
-      max_lanes_(field.regions || source.pieces ? static_cast<int>(kLanes) : kBlock),
-      use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered &&
-                     (source.pieces ? source.pieces->templates[source.number].convex : field.has_convexity())),
-      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {
-  static_assert(kLanes <= vm::kMaxRowLanes);
-  if (!source.pieces) return;
-  convex_.fill(std::numeric_limits<S>::infinity());
-  if (per_lane_) {
-    constants_.resize(vm::constants_in(source.pieces->templates[source.number].code) * vm::kRowStride);
-  }
-}
-
-// Returns the field of the lane's ray.
-template <class S>
-const Field& Stream<S>::field_of(std::size_t lane) const {
-  return source_.pieces ? source_.pieces->fields[source_.piece_of[clipped_rays_[lane].id]] : field_;
-}
+      max_lanes_(field.regions ? static_cast<int>(kLanes) : kBlock),
+      use_convexity_(sizeof(S) == sizeof(float) && marching.method == Method::Tiered && field.has_convexity()),
+      register_lanes_(sizeof(S) == sizeof(float) ? register_lanes() : 1) {}
 
 template <class S>
 void Stream<S>::begin(RayBlock& rays) {
   while (rays.count > 0 && live_ < max_lanes_) {
     const std::size_t i = --rays.count;
-    if (!enters(rays, i)) continue;
-    const std::size_t lane = take_lane();
-    set_clipped_ray(clipped_rays_[lane], rays, i);
-    start_lane(lane, rays.side[i], rays.slope[i]);
+    if (enters(rays, i)) start_lane(rays, i);
   }
 }
 
 template <class S>
-void Stream<S>::start(const ClippedRay& ray, int side, float slope) {
-  const std::size_t lane = take_lane();
-  clipped_rays_[lane] = ray;
-  start_lane(lane, side, slope);
-}
-
-template <class S>
-std::size_t Stream<S>::take_lane() {
+void Stream<S>::start_lane(const RayBlock& rays, std::size_t i) {
   ++live_;
-  if (free_lanes_.empty()) return lanes_used_++;
-  const std::size_t lane = free_lanes_.back();
-  free_lanes_.pop_back();
-  return lane;
-}
-
-// Sets the state of the lane to that before the first evaluation of its clipped ray.
-template <class S>
-void Stream<S>::start_lane(std::size_t lane, int side, float slope) {
-  const ClippedRay& ray = clipped_rays_[lane];
+  std::size_t lane = lanes_used_;
+  if (free_lanes_.empty()) {
+    ++lanes_used_;
+  } else {
+    lane = free_lanes_.back();
+    free_lanes_.pop_back();
+  }
   S* const first = &lanes_->row[0][lane];
   const auto put = [&](int row, S value) { first[row * static_cast<int>(Lanes<S>::kStride)] = value; };
   for (int axis = 0; axis < 3; ++axis) {
-    const S origin = static_cast<S>(ray.origin[axis]);
+    const S origin = static_cast<S>(rays.origin[axis][i]);
     put(kX + axis, origin);
     put(kOx + axis, origin);
-    put(kDx + axis, static_cast<S>(ray.direction[axis]));
+    put(kDx + axis, static_cast<S>(rays.direction[axis][i]));
   }
   for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
-  put(kTMax, round_down<S>(ray.length));
-  put(kSide, static_cast<S>(side));
-  put(kM, takes_slope_hint_ ? std::clamp(static_cast<S>(slope), S(-1), S(0.9)) : S(-1));
+  put(kTMax, round_down<S>(rays.length[i]));
+  put(kSide, rays.side[i]);
+  put(kM, takes_slope_hint_ ? std::clamp(static_cast<S>(rays.slope[i]), S(-1), S(0.9)) : S(-1));
   put(takes_slope_hint_ ? int{kBackoff} : int{kOverstepped}, takes_slope_hint_ ? S(kFirstBackoff) : S(1));
-  if (per_lane_) {
-    const std::vector<float>& row = source_.pieces->rows[source_.piece_of[ray.id]];
-    for (std::size_t k = 0; k < row.size(); ++k) constants_[k * vm::kRowStride + lane] = row[k];
-  }
+  set_clipped_ray(clipped_rays_[lane], rays, i);
   instructions_[lane] = 0;
 }
 
@@ -127,14 +107,10 @@ void Stream<float>::evaluate() {
   const auto& row = lanes_->row;
   const auto count = static_cast<std::size_t>(live_);
   const vm::Points points{row[kX], row[kY], row[kZ]};
-  if (source_.pieces) {
-    source_.pieces->templates[source_.number].evaluate(points, count, constants_.data(), distance_.data(), scratch_,
-                                                       workspace_);
-  } else if (use_convexity_) {
+  if (use_convexity_) {
     return field_.evaluate_convex(points, count, distance_.data(), convex_.data(), workspace_);
-  } else {
-    field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   }
+  field_.evaluate(points, count, distance_.data(), scratch_, workspace_);
   field_.to_steps(points, count, distance_.data());
   if (field_.regions) {
     for (std::size_t i = 0; i < count; ++i) instructions_[i] += scratch_.instructions[i];
@@ -158,8 +134,6 @@ void Stream<S>::compact_lanes() {
     for (auto& row : lanes_->row) row[free_lane] = row[last];
     clipped_rays_[free_lane] = clipped_rays_[last];
     instructions_[free_lane] = instructions_[last];
-    for (std::size_t k = 0; k < constants_.size(); k += vm::kRowStride)
-      constants_[k + free_lane] = constants_[k + last];
   }
   free_lanes_.clear();
 }
@@ -189,7 +163,7 @@ void Stream<S>::finish(std::size_t i) {
   free_lanes_.push_back(i);
   const auto verdict = static_cast<LaneVerdict>(number(kVerdict));
   if (verdict == LaneVerdict::Certify)
-    return certify_from(field_of(i), ray, side, undecided_interval(i), evaluations, instructions);
+    return certify_from(field_, ray, side, undecided_interval(i), evaluations, instructions);
   RayHit::Status status = RayHit::Status::Miss;
   float width = 0;
   double t = 0;
@@ -206,23 +180,17 @@ void Stream<S>::finish(std::size_t i) {
   report(ray.id, status, static_cast<std::int8_t>(side), evaluations, 0u, width, t, instructions);
 }
 
-// Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins
-// with the bracket, widened by the uncertainty. The interval ends before the ray in a field with cells: further on,
-// float may know more.
+// The interval ends before the ray in a field with cells: further on, float may know more.
 template <class S>
 RayInterval Stream<S>::undecided_interval(std::size_t i) const {
-  const auto number = [&](auto row) { return static_cast<double>(lanes_->row[row][i]); };
-  RayInterval interval{number(kT), clipped_rays_[i].length, 0};
-  if (number(kPhase) == static_cast<double>(LanePhase::Refine)) {
-    const double slack = std::max(kBracketMargin * number(kTHi), static_cast<double>(field_.band));
-    interval.begin = std::max(0.0, number(kTLo) - slack);
-    interval.hint = number(kTHi) + slack;
-  }
+  RayInterval interval = runtime::undecided_interval(*lanes_, i, clipped_rays_[i].length, field_.band);
   if (field_.cells)
     interval.end = std::min(interval.end, std::max(interval.begin, interval.hint) + field_.cells->stretch());
   return interval;
 }
 
+template LaneRules<float> make_rules(const Field& field, const Marching& marching);
+template RayInterval undecided_interval(const Lanes<float>& lanes, std::size_t i, double length, float band);
 template class Stream<float>;
 template class Stream<double>;
 

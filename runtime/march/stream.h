@@ -13,39 +13,34 @@
 
 namespace fathom::runtime {
 
-struct Pieces;
+// Samples to accept after the first attempt to cross that met no surface.
+inline constexpr double kFirstBackoff = 2;
 
-// The pieces of a template, for a stream whose rays are each in one of them.
-struct PieceStream {
-  const Pieces* pieces = nullptr;           // null: the stream has a field of its own
-  std::uint32_t number = 0;                 // of the template
-  const std::uint32_t* piece_of = nullptr;  // [ray's id]
-};
+// S is float or double.
+template <class S>
+LaneRules<S> make_rules(const Field& field, const Marching& marching);
+
+// Returns the part of a lane's ray that float has not decided. If float knows a root too loosely, the search begins
+// with the bracket, widened by the uncertainty.
+template <class S>
+RayInterval undecided_interval(const Lanes<S>& lanes, std::size_t lane, double length, float band);
 
 template <class S>
 class Stream final : public Marcher {
  public:
-  static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
-
-  Stream(const Field& field, const Marching& marching, const PieceStream& source = {});
-
-  // Starts a ray that is clipped already, if there is a free lane: less than kLanes rays are under way.
-  void start(const ClippedRay& ray, int side, float slope);
-  int live() const { return live_; }
+  Stream(const Field& field, const Marching& marching);
 
  private:
+  static constexpr std::size_t kLanes = Lanes<S>::kCapacity;
+
   void begin(RayBlock& rays) override;
-  std::size_t take_lane();
-  void start_lane(std::size_t lane, int side, float slope);
+  void start_lane(const RayBlock& rays, std::size_t i);
   void step() override;
   void compact_lanes();
   void evaluate();
-  const Field& field_of(std::size_t lane) const;
   void finish(std::size_t lane);
   RayInterval undecided_interval(std::size_t lane) const;
 
-  const PieceStream source_;
-  const bool per_lane_;  // lanes have constants of their own
   LaneRules<S> rules_;
   std::unique_ptr<Lanes<S>> lanes_;
   const bool uses_epsilon_;      // the method is a baseline method, for which a hit is as wide as epsilon
@@ -60,7 +55,6 @@ class Stream final : public Marcher {
   std::vector<std::size_t> free_lanes_;
   std::size_t lanes_used_ = 0;  // including the free ones
   RegionScratch scratch_;
-  std::vector<float> constants_;  // [constant][lane], as evaluate_rows() takes them; only if per_lane_
   std::array<std::uint64_t, kLanes> instructions_;  // [lane] evaluated for the ray so far
 };
 

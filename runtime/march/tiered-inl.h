@@ -224,7 +224,8 @@ class Tiered {
     // The root of a function that is nearly level has an uncertainty of d_f divided by the slope.
     const N fall = select(crossed, last_g_ - g_, lanes_.get(kFall)), span = select(crossed, width, lanes_.get(kSpan));
     const N slack = k(kTypicalError) * error_ * span;
-    const Mask vague = found & (slack > max(k(kTolerance) * t_, k(kBandShare) * field_band_) * fall);
+    const Mask vague =
+        found & (slack > max(k(kTolerance) * (lanes_.get(kBefore) + t_), k(kBandShare) * field_band_) * fall);
     const Mask known = found & (!vague);
     undecided_ = undecided_ | vague;
     hits_ = hits_ | known;
@@ -259,7 +260,7 @@ class Tiered {
   N band_, max_gap_, evaluations_;
   Mask line_holds_;              // kConvex only: the line through both samples holds
   N line_length_, free_length_;  // length over which the line holds; length that is free
-  N phase_, next_;   // values that finish() stores
+  N phase_, next_;               // values that finish() stores
   SharedRows<N> rows_;
   Mask undecided_, misses_, hits_ = number<N>(0) > number<N>(0);
 };
