@@ -68,6 +68,12 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
       add_native_code(shared.field, kEvaluations);
     }
   }
+  // Each piece's own code of its surface repays if rays hit it often.
+  constexpr std::size_t kMostWithCode = 128;
+  for (Field& own : pieces->fields) {
+    if (native && pieces->fields.size() <= kMostWithCode)
+      own.native.surface = vm::NativeProgram::compile(*own.surface, vm::RecordedResults::Surface);
+  }
   field.pieces = std::move(pieces);
 }
 

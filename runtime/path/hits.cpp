@@ -34,7 +34,7 @@ void find_material(const RenderContext& context, SurfaceInteraction& surface, Ma
   const glm::dvec3 position = surface.hit->position;
   if (context.scene.surfaces[surface.point->surface].mixed) {
     const Field& field = context.field_at(surface.medium->field);
-    const vm::SurfaceShares shares = find_blend_weights(context.scene, field, position, scratch);
+    const vm::SurfaceShares shares = find_blend_weights(context.scene, field, *surface.hit, scratch);
     if (shares.count > 1) {
       own = mix_of(context, shares, position, scratch);
       surface.material = &own;

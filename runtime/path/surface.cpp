@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
+#include <utility>
 
 #include "runtime/field/field.h"
+#include "runtime/field/pieces.h"
 #include "runtime/path/jump_normals.h"
 #include "vm/program/check.h"
 
@@ -70,11 +73,14 @@ void mend_jumps(const Field& field, std::span<const Hit> hits, SurfaceRows& rows
   }
 }
 
-}  // namespace
+// Returns the field of what was hit: a piece's, or the whole.
+const Field& field_of(const Field& whole, std::uint32_t piece) {
+  return whole.pieces && piece != kNoPiece ? whole.pieces->fields[piece] : whole;
+}
 
-void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
-                   std::span<SurfacePoint> points, vm::Workspace& workspace) {
-  CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
+// The same as find_surfaces(), of hits that all have this field.
+void find_surfaces_of(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+                      std::span<SurfacePoint> points, vm::Workspace& workspace) {
   SurfaceRows rows;
   alignas(64) std::array<float, kSurfaceBatch> distance;
   alignas(64) std::array<std::uint32_t, kSurfaceBatch> surface;
@@ -102,11 +108,39 @@ void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std
   }
 }
 
+}  // namespace
+
+void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+                   std::span<SurfacePoint> points, vm::Workspace& workspace) {
+  CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
+  if (!field.pieces) return find_surfaces_of(scene, field, hits, points, workspace);
+  std::array<std::uint16_t, kSurfaceBatch> order;
+  const auto end = order.begin() + std::ssize(hits);
+  std::iota(order.begin(), end, std::uint16_t{0});
+  std::sort(order.begin(), end, [&](std::uint16_t a, std::uint16_t b) {
+    return std::pair(hits[a].piece, a) < std::pair(hits[b].piece, b);
+  });
+  std::array<Hit, kSurfaceBatch> same;
+  std::array<SurfacePoint, kSurfaceBatch> found;
+  for (auto first = order.begin(), last = first; first != end; first = last) {
+    const std::uint32_t piece = hits[*first].piece;
+    std::size_t count = 0;
+    for (; last != end && hits[*last].piece == piece; ++last) same[count++] = hits[*last];
+    find_surfaces_of(scene, field_of(field, piece), std::span(same).first(count), found, workspace);
+    for (std::size_t i = 0; i < count; ++i) {
+      SurfacePoint& point = points[first[static_cast<std::ptrdiff_t>(i)]];
+      point = found[i];
+      if (piece != kNoPiece) point.clear = 0;  // other pieces may be nearer
+    }
+  }
+}
+
 void find_object_points(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                         std::span<SurfacePoint> points, RealScratch& scratch) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (!scene.surfaces[points[i].surface].placed) continue;
-    const vm::SurfacePlace found = find_object_point(scene, field, hits[i].position, scratch);
+    const vm::SurfacePlace found =
+        find_object_point(scene, field_of(field, hits[i].piece), hits[i].position, scratch);
     points[i].surface = found.surface;
     points[i].material = scene.surfaces[found.surface].material;
     points[i].place = found.place;
@@ -122,8 +156,10 @@ vm::SurfacePlace find_object_point(const compiler::CompiledScene& scene, const F
   return found;
 }
 
-vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
+vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& whole, const Hit& hit,
                                      RealScratch& scratch) {
+  const Field& field = field_of(whole, hit.piece);
+  const glm::dvec3 place = hit.position;
   const bool placed =
       std::any_of(scene.surfaces.begin(), scene.surfaces.end(), std::mem_fn(&compiler::Surface::placed));
   if (!placed) {

@@ -19,10 +19,10 @@ namespace fathom::runtime {
 
 // A point where a ray hit a surface.
 struct Hit {
-  glm::dvec3 position;  // scene units
-  glm::vec3 wo;         // unit length, back along the ray
-  int side;             // of the space the ray came through: +1 outside, -1 inside a solid
-  float width;          // of the bracket around the hit, scene units
+  glm::dvec3 position;             // scene units
+  glm::vec3 wo;                    // unit length, back along the ray
+  int side;                        // of the space the ray came through: +1 outside, -1 inside a solid
+  float width;                     // of the bracket around the hit, scene units
   std::uint32_t piece = kNoPiece;  // RayHit::piece
 };
 
@@ -38,8 +38,9 @@ struct SurfacePoint {
   float clear;
 };
 
-// Sets points[i], except its `place`, to the surface at hits[i] of `field`, which is the scene's or a medium's. Takes
-// at most kSurfaceBatch hits. A gradient that is zero or not finite gives the normal wo.
+// Sets points[i], except its `place`, to the surface at hits[i] of `field`, which is the scene's or a medium's: of
+// the piece that was hit, if it is known. Takes at most kSurfaceBatch hits. A gradient that is zero or not finite
+// gives the normal wo.
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace);
 
@@ -52,9 +53,9 @@ void find_object_points(const compiler::CompiledScene& scene, const Field& field
 vm::SurfacePlace find_object_point(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 position,
                                    RealScratch& scratch);
 
-// Returns the surfaces of a blend at a point of `field`'s surface, with their weights. If some surface is `placed`,
+// Returns the surfaces of a blend at a hit of `field`, with their weights. If some surface is `placed`,
 // also returns the point in the coordinates of each surface's node.
-vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, glm::dvec3 place,
+vm::SurfaceShares find_blend_weights(const compiler::CompiledScene& scene, const Field& field, const Hit& hit,
                                      RealScratch& scratch);
 
 // Returns the origin of a ray that leaves the surface on the hit's side, or on the other side if `through`.
