@@ -175,12 +175,13 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       cells.rest_lipschitz};
 }
 
-// Compiles the pieces of a scene, none if it is one piece: `optimised` is the scene after the passes, with Paint.
+// Compiles the pieces of a scene, none if it is one piece or too many: `optimised` is the scene after the passes, with Paint.
 std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised, bool painted, const Source& source,
                                                          Diagnostics& diagnostics, const CompileOptions& options) {
   std::vector<CompiledPiece> pieces;
+  constexpr std::size_t kMostPieces = 1 << 15;  // each of some kilobytes
   const Pieces parts = split(optimised);
-  if (parts.nodes.size() < 2) return pieces;
+  if (parts.nodes.size() < 2 || parts.nodes.size() > kMostPieces) return pieces;
   for (const NodeId node : parts.nodes) {
     const Scene surface = fold(affine(part_of(parts.graph, node))), distance = fold(affine(strip(surface)));
     const std::vector<NodeFacts> known = analyse(distance.graph);
@@ -369,6 +370,19 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
   const bool in_cells = !result.certified && !result.formula_box.empty();
   result.summary = summarise(result.node_count, known[field.root], in_cells, origin);
   return result;
+}
+
+void restore_pieces(CompiledScene& stored, const Definitions& definitions, const Limits& limits) {
+  CompileOptions options;
+  options.limits = limits;
+  options.definitions = definitions;
+  options.file_at_hand = stored.background.image.file;
+  options.pieces = true;
+  options.origin = stored.origin;
+  Diagnostics ignored;  // those of the compilation that made the file
+  std::optional<CompiledScene> scene = compile(stored.source, ignored, options);
+  const auto words = [](const CompiledScene& of) { return of.surface.program().words; };
+  if (scene && words(*scene) == words(stored)) stored.pieces = std::move(scene->pieces);
 }
 
 std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits) {

@@ -51,6 +51,10 @@ struct CompileOptions {
 // Compiles a scene. Returns nullopt exactly when `diagnostics` has errors afterwards.
 std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, const CompileOptions& options = {});
 
+// Gives a scene that was read from a compiled file the pieces that its text has, with the definitions of the file. A
+// scene whose programs are not those of its text stays whole.
+void restore_pieces(CompiledScene& stored, const Definitions& definitions, const Limits& limits);
+
 // Size of a graph before the compiler fuses its instructions.
 struct GraphSize {
   std::size_t nodes;         // reachable from the root

@@ -105,13 +105,15 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
                         Lights(scene, options.environment),
                         {},
                         true};
+  Settings share = settings;
+  share.spp = samples_with(scene, settings, options);
+  RegionOptions regions = region_options(share);
+  regions.interrupted = interruption(settings, options, start);
+  RegionStore* const store = options.region_store.get();
+  const bool meets_pieces = settings.pieces && scene.pieces.size() > 1;
   if (settings.regions) {
-    Settings share = settings;
-    share.spp = samples_with(scene, settings, options);
-    RegionOptions regions = region_options(share);
-    regions.interrupted = interruption(settings, options, start);
-    RegionStore* const store = options.region_store.get();
-    add_regions(context.field, scene, regions, store);
+    // Rays among pieces follow the whole only within solids.
+    if (!meets_pieces || !scene.media.empty()) add_regions(context.field, scene, regions, store);
     if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
     context.media.add_regions(scene, regions, store);
   }
@@ -120,7 +122,9 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     add_native_code(context.field, evaluations);
     context.media.add_native_code(evaluations);
   }
-  if (settings.pieces) add_pieces(context.field, scene, settings.far, settings.native_code);
+  if (meets_pieces) {
+    add_pieces(context.field, scene, settings.far, settings.native_code, settings.regions ? &regions : nullptr, store);
+  }
   RealScratch scratch;
   const glm::dvec3 eye = context.camera.position();
   if (is_uniform_around(eye, context.camera.spread(context.filter.radius()), context.field, context.media, scratch)) {
@@ -157,12 +161,18 @@ std::vector<Moment> moments_of(const compiler::CompiledScene& scene, const Setti
 }
 
 void count_regions(const RenderContext& context, const RenderOptions& options, Stats& stats) {
-  if (!context.field.regions) return;
-  const Regions::Summary& summary = context.field.regions->summary();
-  stats.region_bytes = std::max<std::uint64_t>(stats.region_bytes, summary.bytes);
-  const bool reused = options.region_store && options.region_store->reused(*context.field.regions);
-  stats.region_seconds += reused ? 0 : summary.seconds;
-  stats.regions_reused += reused;
+  std::uint64_t bytes = 0;
+  const auto count = [&](const Field& field) {
+    if (!field.regions) return;
+    const Regions::Summary& summary = field.regions->summary();
+    bytes += summary.bytes;
+    const bool reused = options.region_store && options.region_store->reused(*field.regions);
+    stats.region_seconds += reused ? 0 : summary.seconds;
+    stats.regions_reused += reused;
+  };
+  count(context.field);
+  if (context.field.pieces) std::ranges::for_each(context.field.pieces->fields, count);
+  stats.region_bytes = std::max(stats.region_bytes, bytes);
 }
 
 }  // namespace

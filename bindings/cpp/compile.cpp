@@ -62,6 +62,7 @@ Error compile_text(const compiler::Source& source, const CompileOptions& options
   how.limits = limits_of(options);
   how.definitions = std::move(definitions);
   how.imports = imports;
+  how.pieces = true;
   how.on_source = [&](const compiler::Source& read) { whole = read; };
   how.on_syntax = [&](const compiler::ReadScene& read) { foreign = is_foreign(read.format); };
   compiler::Diagnostics diagnostics;
@@ -100,6 +101,7 @@ Error read_compiled(const std::string& bytes, const std::string& path, const Com
   if (const auto excess = compiler::excess_of(stored.scene, limits)) {
     return {Error::Kind::BadScene, fmt::format("{}: {}", path, excess->what)};
   }
+  if (stored.contents.text) compiler::restore_pieces(stored.scene, stored.contents.definitions, limits);
   auto data = std::make_shared<Scene::Data>(std::move(stored.scene));
   data->limits = limits;
   data->definitions = stored.contents.definitions;
@@ -199,6 +201,7 @@ std::optional<compiler::CompiledScene> library::compile_picture(const Scene::Dat
   how.definitions.insert(how.definitions.end(), more.begin(), more.end());
   how.stage = data.foreign;
   how.origin = origin;
+  how.pieces = true;
   how.file_at_hand = data.scene.background.image.file;
   compiler::Diagnostics diagnostics;
   auto scene = compiler::compile(data.scene.source, diagnostics, how);

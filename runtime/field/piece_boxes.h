@@ -2,7 +2,7 @@
 //
 // A node has up to 16 boxes, which a ray meets all at once, by slabs (Kay and Kajiya, "Ray Tracing Complex Scenes",
 // 1986). The tree is built from the top, by the areas of the boxes (Wald, Benthin and Boulos, "Getting Rid of
-// Packets", 2008). What is found and in which order depends on the ray and the boxes alone, not on the tree.
+// Packets", 2008). Pieces and their order depend on the ray and the boxes alone, not on the tree.
 // Tested by: tests/runtime/field/piece_boxes_test.cpp
 #pragma once
 

@@ -24,7 +24,8 @@ void PieceTemplate::evaluate(vm::Points points, std::size_t count, const float* 
   vm::evaluate_rows(code, points, count, constants, out, workspace);
 }
 
-void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native) {
+void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native,
+                const RegionOptions* regions, RegionStore* store) {
   if (scene.pieces.size() < 2) return;
   constexpr double kEvaluations = 1e7;  // enough for machine code to repay
   auto pieces = std::make_shared<Pieces>();
@@ -34,6 +35,7 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
   for (const compiler::CompiledPiece& piece : scene.pieces) {
     Field own = make_field(piece, extent_of(scene), far);
     own.convex = false;  // the radius of convexity is for unions
+    if (regions && own.far_levels.used()) add_regions(own, piece, *regions, store);
     boxes.push_back(own.bound);
     pieces->forms.push_back(piece.form);
     vm::ProgramTemplate code = vm::template_of(piece.distance);

@@ -18,6 +18,7 @@ PieceMarcher::PieceMarcher(const Field& field, const Marching& marching)
     : Marcher(field),
       pieces_(*field.pieces),
       marching_(marching),
+      register_lanes_(register_lanes()),
       whole_(field, marching),
       searches_(field),
       streams_(pieces_.templates.size()),
@@ -84,12 +85,15 @@ void PieceMarcher::start(std::uint32_t number) {
     return streams_[shared]->start(number, state.box.piece, state.ray.origin, state.ray.direction, begin, end, slope);
   }
   if (!own_[shared]) own_[shared] = std::make_unique<Stream<float>>(pieces_.fields[piece], marching_);
+  while (own_[shared]->room() == 0) advance(*own_[shared]);
   own_[shared]->add(number, {state.ray.origin, state.ray.direction, end, 1, slope, state.box.entry});
 }
 
 // Ends the template's proposals. Rays whose roots the field does not confirm march.
 void PieceMarcher::answer(std::uint32_t shared) {
-  counters_.evaluations += proposals_[shared]->answer(answers_, workspace_);
+  const std::size_t evaluated = proposals_[shared]->answer(answers_, workspace_);
+  counters_.evaluations += evaluated;
+  counters_.lanes += (evaluated + register_lanes_ - 1) / register_lanes_ * register_lanes_;
   const std::uint64_t instructions = 2 * pieces_.templates[shared].code.instructions;
   for (const PieceProposals::Answer& each : answers_) {
     RayState& state = states_[each.ray];

@@ -74,6 +74,7 @@ class PieceMarcher final : public Marcher {
 
   const Pieces& pieces_;
   const Marching marching_;
+  const std::size_t register_lanes_;  // points per register
   Stream<float> whole_;
   Searches searches_;
   std::vector<std::unique_ptr<PieceStream>> streams_;       // [template]

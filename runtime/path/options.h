@@ -45,7 +45,7 @@ struct Execution {
   bool native_code = true;                // compile programs to machine code where that pays
   // Rays meet the scene's pieces one by one (runtime/field/pieces.h), if the scene has them. The picture is then as
   // near the truth, but has other bits.
-  bool pieces = false;
+  bool pieces = true;
   FilmLayers layers;
   bool profile = false;  // measure the times of stages (Stats::stages)
 };

@@ -139,11 +139,15 @@ std::variant<compiler::CompiledScene, ExitCode> compile_scene(SceneInput input, 
   if (input.stored) {
     const bool needs_text = !arguments.definitions.empty() || asks_for_graph(options);
     if (!needs_text) {
+      const bool has_text = input.stored->contents.text;
+      const compiler::Definitions definitions = input.stored->contents.definitions;
       auto scene = take_stored(*std::move(input.stored), arguments, streams);
       if (const auto* read = std::get_if<compiler::CompiledScene>(&scene)) {
         if (const auto code = check_inputs(*read, streams)) return *code;
         verbosity.describe(*read);
       }
+      if (auto* read = std::get_if<compiler::CompiledScene>(&scene); read && options.pieces && has_text)
+        compiler::restore_pieces(*read, definitions, arguments.limits);
       return scene;
     }
     if (!input.stored->contents.text) return fail_without_text(arguments, streams);

@@ -61,6 +61,7 @@ MaybeScene compile_moment(const PreparedRender& picture, const SceneInput& input
   arguments.definitions.emplace_back(compiler::kTimeParameter, time);
   compiler::CompileOptions options;
   options.stage = true;
+  options.pieces = true;
   options.origin = picture.scene.origin;
   options.file_at_hand = picture.scene.background.image.file;
   BufferedMessages held(streams);
@@ -147,6 +148,7 @@ std::variant<std::unique_ptr<PreparedRender>, ExitCode> prepare_render(const Ren
   compiler::CompileOptions options = verbosity.watch_compiler();
   options.lint_picture = true;
   options.stage = true;
+  options.pieces = true;
   if (cache.background) options.file_at_hand = cache.background_file;
   BufferedMessages held(streams);
   MaybeScene compiled = compile_scene(input, request.scene, held.streams(), options);

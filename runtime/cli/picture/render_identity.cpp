@@ -114,6 +114,7 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
   add_settings(settings, identity);
   identity.emplace_back("marching", marching_of(settings.marching));
   identity.emplace_back("layers", layers_of(settings));
+  if (!scene.pieces.empty() && settings.pieces) identity.emplace_back("pieces", std::to_string(scene.pieces.size()));
   // The rows appear only with moments, so that older films without motion blur keep their identity.
   if (!options.moments.empty()) {
     identity.emplace_back("shutter times", std::to_string(options.moments.size()));

@@ -53,7 +53,7 @@ TEST_CASE("closed forms: rays enter where the search in double says", "[march][p
       rays.push_back({4.0 * random.direction() + random.in_box(1), random.direction(), 50, 0});
       found->push(rays.back().origin, rays.back().direction, i % 3);
     }
-    // Of forms that differ in number, and of one solid.
+    // Forms with numbers of their own, and one form.
     const compiler::ClosedForm alike[] = {form, form, form};
     find_entrances(alike, seed % 8 < 4, *found);
     const std::vector<RayHit> truths = march(field, rays, {.method = Method::Certified}).ray_hits;

@@ -114,11 +114,11 @@ TEST_CASE("cli shutter: moments of the same programs have their regions together
   const Moving folder;
   folder.write("many.fathom", R"(fathom 1
 param time = 0
-film (width = 32, height = 24, fps = 8)
+film (width = 96, height = 72, fps = 8)
 render (spp = 16)
 camera (position = [12*cos(time) + 3, 6, 12*sin(time) + 3], target = [3, 3, 3], shutter = 0.5)
 background [1, 1, 1]
-object [for i in 0..729: sphere(0.3).translate([mod(i, 9), mod(floor(i/9), 9), floor(i/81)])]
+object [for i in 0..729: sphere(1).translate([mod(i, 9), mod(floor(i/9), 9), floor(i/81)])]
 )");
   REQUIRE(folder.run("render many.fathom -o a.png -q --stats-json stats.json").code == 0);
   CHECK_THAT(folder.read("stats.json"), Contains("\"regions_reused\": 7,"));

@@ -73,7 +73,7 @@ TEST_CASE("cli: regions get no more memory than the limit leaves", "[cli]") {
   const Folder folder;
   std::string balls;
   for (int i = 0; i < 400; ++i) {
-    balls += fmt::format(R"({}{{"type": "sphere", "radius": 0.02, "translate": [{}, {}, {}]}})", i == 0 ? "" : ", ",
+    balls += fmt::format(R"({}{{"type": "sphere", "radius": 0.15, "translate": [{}, {}, {}]}})", i == 0 ? "" : ", ",
                          i % 7 * 0.1, i / 7 % 7 * 0.1, i / 49 * 0.1);
   }
   folder.write("balls.json", R"({"version": 1, "background": [1, 1, 1], "objects": [)" + balls + "]}");
