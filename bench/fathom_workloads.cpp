@@ -29,7 +29,8 @@ class ShadowRenderer {
     add_native_code(field_, kEvaluations * frame.width * frame.height);
     marcher_ = make_marcher(field_);
     picture_.pixels.resize(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
-    for (int slot = marcher_->capacity(); slot > 0; --slot) free_.push_back(static_cast<std::uint32_t>(slot - 1));
+    for (int slot = runtime::Marcher::best_load(field_); slot > 0; --slot)
+      free_.push_back(static_cast<std::uint32_t>(slot - 1));
   }
 
   Picture run() {

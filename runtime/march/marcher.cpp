@@ -15,14 +15,10 @@ constexpr std::size_t kMaxSearchEvaluations = 2048;
 
 }  // namespace
 
-int Marcher::capacity_for(const Field& field) { return field.regions || field.pieces ? kMaxRays : kMaxRays / 2; }
+int Marcher::best_load(const Field& field) { return field.regions || field.pieces ? kMaxRays : kMaxRays / 2; }
 
 // With regions every point has its own program, so that evaluating many points at once gains nothing.
-Marcher::Marcher(const Field& field)
-    : field_(field),
-      capacity_(capacity_for(field)),
-      max_waiting_(static_cast<std::size_t>(capacity_)),
-      min_batch_(field.regions ? 1 : kMinSearchBatch) {}
+Marcher::Marcher(const Field& field) : field_(field), min_batch_(field.regions ? 1 : kMinSearchBatch) {}
 
 void Marcher::fail_full() { check_failed("room() > 0", __FILE__, __LINE__, "a ray was added to a full marcher"); }
 
@@ -30,7 +26,7 @@ void Marcher::advance() {
   if (waiting_.count > 0) begin_waiting();
   if (live_ > 0) step();
   search();
-  max_waiting_ = static_cast<std::size_t>(capacity_ - live_) - searched_.size();
+  max_waiting_ = static_cast<std::size_t>(kMaxRays - live_) - searched_.size();
 }
 
 void Marcher::begin_waiting() {

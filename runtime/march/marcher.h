@@ -38,9 +38,8 @@ class Marcher {
   Marcher(const Marcher&) = delete;
   Marcher& operator=(const Marcher&) = delete;
 
-  // Maximum number of rays under way, up to kMaxRays: high with regions, so that many points need one template.
-  int capacity() const { return capacity_; }
-  static int capacity_for(const Field& field);
+  // Number of rays under way that is fastest: high with regions and pieces, so that many points need one template.
+  static int best_load(const Field& field);
   int room() const { return static_cast<int>(max_waiting_ - waiting_.count); }
   // Number of rays under way.
   std::size_t under_way() const { return static_cast<std::size_t>(live_) + waiting_.count + searched_.size(); }
@@ -109,7 +108,6 @@ class Marcher {
                     std::uint32_t evaluations, std::uint64_t instructions);
 
   const Field& field_;
-  const int capacity_;
   int live_ = 0;  // rays under way, without the rays added since the last advance()
   MarchCounters counters_;
   vm::Workspace workspace_;
@@ -150,7 +148,7 @@ class Marcher {
 
   RayBlock waiting_;                // the last ray begins next
   std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
-  std::size_t max_waiting_;         // capacity_, less the rays that are live or searched
+  std::size_t max_waiting_ = kMaxRays;  // kMaxRays, less the rays that are live or searched
   const std::size_t min_batch_;     // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
   std::unordered_map<std::uint32_t, Work> resumed_;  // [id] work on rays that went on in float after a search

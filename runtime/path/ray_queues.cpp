@@ -9,16 +9,13 @@ namespace {
 // other half fills its lanes meanwhile.
 constexpr std::size_t kResultBatch = 256;
 
-std::size_t rays_in(const Marcher& marcher) { return static_cast<std::size_t>(marcher.capacity() - marcher.room()); }
-
 }  // namespace
 
-RayQueues::RayQueues(const RenderContext& context) : context_(context), marchers_(1 + context.media.size()) {
-  int capacity = marcher(0).capacity();
-  for (std::size_t i = 0; i < context.media.size(); ++i) {
-    capacity = std::min(capacity, Marcher::capacity_for(context.media.field(i)));
-  }
-  capacity_ = static_cast<std::size_t>(capacity);
+RayQueues::RayQueues(const RenderContext& context)
+    : context_(context),
+      marchers_(1 + context.media.size()),
+      capacity_(static_cast<std::size_t>(Marcher::best_load(context.field))) {
+  marcher(0);  // clock() is its
 }
 
 bool RayQueues::is_idle() const {
@@ -30,8 +27,8 @@ bool RayQueues::is_idle() const {
 bool RayQueues::is_due(std::size_t field) const {
   if (field == 0) return true;
   if (!marchers_[field]) return false;
-  const std::size_t rays = rays_in(*marchers_[field]);
-  return rays > 0 && rays >= std::min(kResultBatch, rays_in(*marchers_[0]));
+  const std::size_t rays = marchers_[field]->under_way();
+  return rays > 0 && rays >= std::min(kResultBatch, marchers_[0]->under_way());
 }
 
 bool RayQueues::advance(std::size_t field) {
