@@ -145,7 +145,7 @@ void spawn(const Rendering& r, const std::vector<Ray>& rays, const std::vector<R
     const runtime::Hit hit{rays[i].origin + hits[i].t * rays[i].direction, glm::vec3(-rays[i].direction),
                            hits[i].side, hits[i].width, hits[i].piece};
     runtime::SurfacePoint point{};
-    runtime::find_surfaces(r.scene, r.whole, {&hit, 1}, {&point, 1}, workspace);
+    runtime::find_surfaces(r.scene, r.pieces, {&hit, 1}, {&point, 1}, workspace);
     runtime::Sampler sampler(1, static_cast<std::uint32_t>(i), 0, 0);
     diffuse.push_back(runtime::spawn_ray(
         hit, point, runtime::to_frame(point.normal, runtime::square_to_cosine_hemisphere(sampler.next2())), false));

@@ -175,7 +175,23 @@ std::optional<CompiledField> compile_field(const Scene& scene, const Scene& opti
       cells.rest_lipschitz};
 }
 
-// Compiles the pieces of a scene, none if it is one piece or too many: `optimised` is the scene after the passes, with Paint.
+// Takes the factor from the root by which `normalise` made it as flat as its neighbours: alone it needs none, and its
+// roots are known the better the steeper it is.
+Scene without_level(Scene scene) {
+  const Graph& graph = scene.graph;
+  const bool painted = graph.kind(scene.root) == Kind::Paint;
+  const NodeId top = painted ? graph.children(scene.root)[0] : scene.root;
+  if (graph.kind(top) != Kind::Scaled) return scene;
+  const NodeId inner = graph.children(top)[0];
+  if (analyse(graph)[inner].lipschitz <= 1) return scene;
+  const NodeId paint = scene.root;
+  const NodeId only[] = {inner};
+  scene.root = painted ? scene.graph.add(Kind::Paint, graph.params(paint), only, graph.origin(paint)) : inner;
+  return scene;
+}
+
+// Compiles the pieces of a scene, none if it is one piece or too many: `optimised` is the scene after the passes,
+// with Paint.
 std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised, bool painted, const Source& source,
                                                          Diagnostics& diagnostics, const CompileOptions& options) {
   std::vector<CompiledPiece> pieces;
@@ -183,12 +199,13 @@ std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised,
   const Pieces parts = split(optimised);
   if (parts.nodes.size() < 2 || parts.nodes.size() > kMostPieces) return pieces;
   for (const NodeId node : parts.nodes) {
-    const Scene surface = fold(affine(part_of(parts.graph, node))), distance = fold(affine(strip(surface)));
+    const Scene surface = fold(affine(without_level(part_of(parts.graph, node)))),
+                distance = fold(affine(strip(surface)));
     const std::vector<NodeFacts> known = analyse(distance.graph);
     auto field = compile_field(surface, distance, known, painted, source, diagnostics, options);
     if (!field) return std::nullopt;
-    pieces.push_back({*std::move(field), is_convex(distance.graph, distance.root),
-                      closed_form(distance.graph, distance.root)});
+    pieces.push_back(
+        {*std::move(field), is_convex(distance.graph, distance.root), closed_form(distance.graph, distance.root)});
   }
   return pieces;
 }

@@ -131,9 +131,8 @@ class Splitting {
   // bound leave those without: their rays keep the proof.
   bool is_worth(std::span<const NodeId> arms, double cost) const {
     if (arms.size() < 2) return true;
-    const auto certified = [this](NodeId arm) { return facts_[arm].certified; };
-    const std::ptrdiff_t proved = std::ranges::count_if(arms, certified);
-    if (proved > 0 && proved < std::ssize(arms)) return true;
+    const auto rough = std::ranges::count_if(arms, [this](NodeId arm) { return is_rough(arm); });
+    if (rough > 0 && rough < std::ssize(arms)) return true;
     Box all;
     for (const NodeId arm : arms) {
       if (facts_[arm].box.finite()) all = unite(all, facts_[arm].box);
@@ -146,6 +145,15 @@ class Splitting {
       together += cost_[arm];
     }
     return apart < together;
+  }
+
+  // True if nothing is proved of the node, or if it was made flatter for its neighbours' sake (passes/normalise), whose
+  // roots are then known no better than its own.
+  bool is_rough(NodeId id) const {
+    constexpr double kSteep = 4;
+    if (!facts_[id].certified) return true;
+    while (out_.kind(id) == Kind::Paint) id = out_.children(id)[0];
+    return out_.kind(id) == Kind::Scaled && facts_[out_.children(id)[0]].lipschitz > kSteep;
   }
 
   // Adds a node like number `id` over these children.

@@ -45,14 +45,29 @@ void PieceMarcher::begin(RayBlock& rays) {
     state.side = 1;
     state.evaluations = state.certified = 0;
     state.instructions = 0;
-    if (rays.side[i] == 1) {
+    const int side = rays.side[i] == 0 ? side_at(state.ray.origin) : rays.side[i];
+    if (side == 1) {
       pieces_.boxes.begin(state.ray.origin, state.ray.direction, state.ray.length, state.visit);
       ready_.push_back(number);
     } else {
       state.box.piece = kWhole;
-      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, rays.side[i], state.slope});
+      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, side, state.slope});
     }
   }
+}
+
+// Returns -1 if a place lies within a piece, else 1. Rays of one place come together: those of a pinhole.
+int PieceMarcher::side_at(glm::dvec3 place) {
+  if (place == place_) return side_;
+  place_ = place;
+  side_ = 1;
+  pieces_.boxes.begin(place, {1, 0, 0}, 0, at_place_);
+  std::uint64_t instructions = 0;
+  for (BoxedPiece found; side_ == 1 && pieces_.boxes.next(at_place_, 0, found);) {
+    const Field& piece = pieces_.fields[static_cast<std::size_t>(found.piece)];
+    if (piece.evaluate(place, real_scratch_, instructions) < 0) side_ = -1;
+  }
+  return side_;
 }
 
 // Has the ray enter the next box that it has to, or ends it.

@@ -5,11 +5,13 @@
 // the next box lies beyond its hit. Its hit depends on the ray and the pieces alone. If several roots lie within
 // their brackets, the piece that comes first in the scene is hit: coincident faces have one surface.
 //
-// Rays of side +1 alone meet pieces. All others follow the whole field.
+// Rays within solids follow the whole field.
 // Not a public header: march.h is. Tested by: tests/runtime/march/piece_marcher_test.cpp
 #pragma once
 
 #include <cstdint>
+#include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -63,6 +65,7 @@ class PieceMarcher final : public Marcher {
 
   void begin(RayBlock& rays) override;
   void step() override;
+  int side_at(glm::dvec3 place);
   void begin_next_piece(std::uint32_t number);
   void start(std::uint32_t number);
   void answer(std::uint32_t shared);
@@ -85,6 +88,9 @@ class PieceMarcher final : public Marcher {
   std::vector<PieceProposals::Answer> answers_;
   std::vector<PieceStream::Ended> ended_;
   std::vector<RayHit> found_;
+  glm::dvec3 place_{std::numeric_limits<double>::quiet_NaN()};  // where side_at() was asked last
+  int side_ = 1;                                                // there
+  PieceBoxes::Visit at_place_;
 };
 
 }  // namespace fathom::runtime

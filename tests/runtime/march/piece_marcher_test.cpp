@@ -157,6 +157,96 @@ TEST_CASE("pieces: of coincident faces the first piece is hit", "[march][pieces]
   }
 }
 
+// Rays from next to one solid's face, at up to twice the offset of departing rays on either side of it: in the
+// corners of rooms, under things that stand on a floor, at solids that touch or overlap, and along thin shells.
+TEST_CASE("pieces: rays that begin at a second piece end where the whole field ends them", "[march][pieces]") {
+  const compiler::CompiledScene scene = compiled(
+      "fathom 1\ncamera(position = [4, 3, 5], target = [0, 0.5, 0])\nobject plane([0, 1, 0], offset = 0)\n"
+      "object box([1, 2, 0.1]).translate([0, 1.9, -1])\nobject box([0.1, 2, 1]).translate([-1, 2, 0])\n"
+      "object sphere(0.4).translate([0, 0.4, 0])\nobject sphere(0.4).translate([0.6, 0.4, 0])\n"
+      "object cylinder(0.3, 0.5).translate([0.5, 0.5, -0.6])\n"
+      "object box([0.3, 0.3, 0.3]).onion(0.001).translate([0.8, 0.3, 0.8])\n"
+      "object sphere(0.5).onion(0.0005).translate([-0.3, 0.4, 0.8])\nobject torus(0.5, 0.1)\n" +
+      kFractal);
+  const Field field = field_of(scene, true);
+  REQUIRE(field.pieces->fields.size() > 8);
+  RealScratch scratch;
+  std::vector<Ray> rays;
+  std::uint64_t instructions = 0;
+  constexpr double kOffset = 4e-5;
+  for (int i = 0; rays.size() < static_cast<std::size_t>(test::scaled_cases(20000)); ++i) {
+    test::Random random(static_cast<std::uint64_t>(i));
+    // A place on a random piece, found along a random line.
+    const glm::dvec3 from = 4.0 * random.direction(), along = glm::normalize(random.in_box(1) - from);
+    const Field& piece = field.pieces->fields[static_cast<std::size_t>(random.uniform(0, 9))];
+    const Ray probe{from, along, 12, 1};
+    const RayHit found = march(piece, {&probe, 1}, {.method = Method::Certified}).ray_hits[0];
+    if (!is_hit(found)) continue;
+    const glm::dvec3 origin = from + (found.t + 2 * kOffset * random.uniform(-1, 1)) * along;
+    const double f = field.evaluate(origin, scratch, instructions);
+    if (std::abs(f) < 4e-6) continue;  // sides that float cannot tell
+    rays.push_back({origin, random.direction(), 20, f < 0 ? -1 : 1});
+  }
+  CHECK(wrong_ones(field, rays) == 0);
+}
+
+// One flag of the whole scene said that something is estimated: a fractal out of view let rays pass through the walls
+// of a formula that jumps.
+TEST_CASE("pieces: a formula keeps its proof beside an estimate", "[march][pieces]") {
+  const std::string view =
+      "fathom 1\ncamera(position = [-4.7, -3.6, -3.7], target = [0, 0, 0])\n"
+      "object expression(length(mod(x, 0.7) - 0.2, mod(y, 0.7) - 0.3, mod(z, 0.7) - 0.45) - 0.22, half_size = [1, 1, "
+      "1])\n";
+  const compiler::CompiledScene scene = compiled(view + "object mandelbulb().translate([30, 0, 0])\n"),
+                                alone = compiled(view);
+  REQUIRE(scene.pieces.size() == 2);
+  const Field field = field_of(scene), formula = make_field(alone);
+  const glm::dvec3 aside = alone.origin - scene.origin;
+  std::vector<Ray> rays, same;
+  for (int i = 0; i < test::scaled_cases(1600); ++i) {
+    test::Random random(static_cast<std::uint64_t>(i));
+    const glm::dvec3 from = 4.0 * random.direction();
+    same.push_back({from, glm::normalize(random.in_box(1) - from), 8, 1});
+    rays.push_back(same.back());
+    rays.back().origin += aside;
+  }
+  const std::vector<RayHit> hits = march(field, rays).ray_hits,
+                            truth = march(formula, same, {.method = Method::Certified}).ray_hits;
+  int wrong = 0, found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    found += is_hit(truth[i]);
+    wrong += is_hit(hits[i]) != is_hit(truth[i]) || (is_hit(hits[i]) && std::abs(hits[i].t - truth[i].t) > 1e-4);
+  }
+  CAPTURE(found);
+  CHECK(found > test::scaled_cases(400));
+  CHECK(wrong == 0);
+}
+
+// Camera rays do not know their side. They followed the whole field, and what they hit was of no piece.
+TEST_CASE("pieces: rays that do not know their side meet pieces, unless they begin within one", "[march][pieces]") {
+  const compiler::CompiledScene scene = compiled(scene_text(7));
+  const Field field = field_of(scene);
+  RealScratch scratch;
+  std::uint64_t instructions = 0;
+  std::vector<Ray> rays;
+  for (int i = 0; i < test::scaled_cases(2000); ++i) {
+    test::Random random(static_cast<std::uint64_t>(i / 2));  // two rays of one place
+    const glm::dvec3 from = random.in_box(2.5), along = random.direction();
+    rays.push_back({from, i % 2 == 0 ? along : -along, 30});
+  }
+  int pieces = 0, inside = 0;
+  for (const RayHit& hit : march(field, rays).ray_hits) {
+    const bool solid = field.evaluate(rays[hit.id].origin, scratch, instructions) < 0;
+    CHECK(hit.side == (solid ? -1 : 1));
+    if (is_hit(hit)) CHECK((hit.piece == kNoPiece) == solid);
+    pieces += is_hit(hit) && !solid;
+    inside += solid;
+  }
+  CHECK(pieces > test::scaled_cases(300));
+  CHECK(inside > test::scaled_cases(300));
+  CHECK(wrong_ones(field, rays) == 0);
+}
+
 TEST_CASE("pieces: a picture has the same bits for any threads and tiles, and the light of the whole field's",
           "[march][pieces]") {
   const compiler::CompiledScene scene = compiled(scene_text(5) + "background [1, 0.9, 0.8]\n");
