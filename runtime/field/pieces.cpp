@@ -32,10 +32,14 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
   using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, double, int, bool>;
   std::map<Key, std::uint32_t> known;
   std::vector<compiler::Box> boxes;
+  RegionOptions left = regions ? *regions : RegionOptions{};
   for (const compiler::CompiledPiece& piece : scene.pieces) {
     Field own = make_field(piece, extent_of(scene), far);
     own.convex = false;  // the radius of convexity is for unions
-    if (regions && own.far_levels.used()) add_regions(own, piece, *regions, store);
+    if (regions && own.far_levels.used()) {
+      add_regions(own, piece, left, store);
+      if (own.regions) left.memory -= std::min(left.memory, own.regions->summary().bytes);
+    }
     boxes.push_back(own.bound);
     pieces->forms.push_back(piece.form);
     vm::ProgramTemplate code = vm::template_of(piece.distance);

@@ -7,6 +7,12 @@
 #include "runtime/march/stream.h"
 
 namespace fathom::runtime {
+namespace {
+
+// Evaluations after which advance() returns, so that its caller may stop where each takes microseconds.
+constexpr std::size_t kMaxEvaluations = 1 << 14;
+
+}  // namespace
 
 PieceStream::PieceStream(const Pieces& pieces, std::uint32_t number, const Marching& marching)
     : pieces_(pieces),
@@ -63,8 +69,10 @@ void PieceStream::compact_lanes() {
 
 void PieceStream::advance(std::size_t few, std::vector<Ended>& ended, MarchCounters& counters,
                           vm::Workspace& workspace) {
+  std::size_t points = 0;
   do {
     compact_lanes();
+    points += live_;
     const auto& row = lanes_->row;
     template_.evaluate({row[kX], row[kY], row[kZ]}, live_, constants_.data(), distance_.data(), scratch_, workspace);
     counters.evaluations += live_;
@@ -73,7 +81,7 @@ void PieceStream::advance(std::size_t few, std::vector<Ended>& ended, MarchCount
     LaneNumbers numbers;
     for (std::size_t i = runtime::advance(*lanes_, live_, at, rules_, numbers); i-- > 0;)
       ended.push_back(finish(numbers[i], counters));
-  } while (live_ >= few && live_ > 0);
+  } while (live_ >= few && live_ > 0 && points < kMaxEvaluations);
 }
 
 PieceStream::Ended PieceStream::finish(std::size_t i, MarchCounters& counters) {

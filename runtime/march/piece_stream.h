@@ -26,8 +26,8 @@ class PieceStream {
   PieceStream(const Pieces& pieces, std::uint32_t number, const Marching& marching);
 
   std::size_t live() const { return live_; }
-  // Starts the ray of this number in a piece, outside of the solid: its part from `begin` to `end`, distances from its
-  // origin. Requires live() < kLanes.
+  // Starts the ray of this number in a piece, outside of the solid: its part from `begin` to `end`, distances from
+  // its origin. Requires live() < kLanes.
   void start(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
              float slope);
 
@@ -39,7 +39,8 @@ class PieceStream {
     std::uint32_t evaluations;
     RayInterval rest;  // what is left of the ray, if the verdict is Certify
   };
-  // Advances the rays until fewer than `few` are left, and at least once. Appends those that end to `ended`.
+  // Advances the rays, at least once, until fewer than `few` are left or it has taken thousands of evaluations.
+  // Appends those that end to `ended`.
   void advance(std::size_t few, std::vector<Ended>& ended, MarchCounters& counters, vm::Workspace& workspace);
 
  private:
