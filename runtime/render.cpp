@@ -110,10 +110,12 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
   RegionOptions regions = region_options(share);
   regions.interrupted = interruption(settings, options, start);
   RegionStore* const store = options.region_store.get();
-  const bool meets_pieces = settings.pieces && scene.pieces.size() > 1;
+  if (settings.pieces) {
+    add_pieces(context.field, scene, settings.far, settings.native_code, settings.regions ? &regions : nullptr, store);
+  }
   if (settings.regions) {
     // Rays among pieces follow the whole only within solids.
-    if (!meets_pieces || !scene.media.empty()) add_regions(context.field, scene, regions, store);
+    if (!context.field.pieces || !scene.media.empty()) add_regions(context.field, scene, regions, store);
     if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
     context.media.add_regions(scene, regions, store);
   }
@@ -121,9 +123,6 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
     const double evaluations = region_options(settings).evaluations;
     add_native_code(context.field, evaluations);
     context.media.add_native_code(evaluations);
-  }
-  if (meets_pieces) {
-    add_pieces(context.field, scene, settings.far, settings.native_code, settings.regions ? &regions : nullptr, store);
   }
   RealScratch scratch;
   const glm::dvec3 eye = context.camera.position();

@@ -101,7 +101,8 @@ PieceBoxes::PieceBoxes(std::span<const compiler::Box> boxes) {
   add_node(items);
 }
 
-// Returns the items in two parts, so that the areas of the parts' boxes times their numbers are least.
+// Sorts the items so that the areas of the boxes of two parts, times the parts' sizes, are least. Returns the size of
+// the first part.
 template <class Item>
 std::size_t best_part(std::span<Item> items) {
   std::size_t best = items.size() / 2;

@@ -12,6 +12,9 @@ namespace {
 // Pieces of one template have float errors within a factor of two, because the largest holds for all.
 int magnitude_of(double cancellation) { return std::ilogb(std::max(cancellation, 0.125)); }
 
+// Maximum number of templates: each has a stream of 80 kB in every thread.
+constexpr std::size_t kMostTemplates = 512;
+
 // True if lanes can hold the constants of pieces of this field: its program is run as it is.
 bool runs_program(const Field& field) { return !field.cells && !field.regions && !field.far_levels.used(); }
 
@@ -60,6 +63,7 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
     }
     pieces->fields.push_back(std::move(own));
   }
+  if (pieces->templates.size() > kMostTemplates) return;
   pieces->boxes = PieceBoxes(boxes);
   pieces->rows.resize(scene.pieces.size());
   for (std::size_t i = 0; i < scene.pieces.size(); ++i) {

@@ -39,8 +39,8 @@ struct Pieces {
   std::vector<PieceTemplate> templates;
 };
 
-// Gives the scene's pieces to its field: rays then meet the pieces, not the whole. A scene of one piece stays whole.
-// `native`: with machine code. `regions`: of pieces that gain by them, which share the
+// Gives the scene's pieces to its field: rays then meet the pieces, not the whole. A scene of one piece, or of hundreds
+// of templates, stays whole. `native`: with machine code. `regions`: of pieces that gain by them, which share the
 // memory, or null.
 void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native,
                 const RegionOptions* regions = nullptr, RegionStore* store = nullptr);
