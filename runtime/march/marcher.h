@@ -146,10 +146,10 @@ class Marcher {
   };
   bool resume(const SearchedRay& searched);
 
-  RayBlock waiting_;                // the last ray begins next
-  std::size_t clipped_ = 0;         // number of waiting rays that are clipped, the first ones
+  RayBlock waiting_;                    // the last ray begins next
+  std::size_t clipped_ = 0;             // number of waiting rays that are clipped, the first ones
   std::size_t max_waiting_ = kMaxRays;  // kMaxRays, less the rays that are live or searched
-  const std::size_t min_batch_;     // minimum number of rays worth a search
+  const std::size_t min_batch_;         // minimum number of rays worth a search
   std::vector<SearchedRay> searched_;
   std::unordered_map<std::uint32_t, Work> resumed_;  // [id] work on rays that went on in float after a search
   // The points of the rays in searched_, [axis][ray], and the field there, [ray].

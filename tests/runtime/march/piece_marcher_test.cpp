@@ -215,7 +215,7 @@ TEST_CASE("pieces: a formula keeps its proof beside an estimate", "[march][piece
   int wrong = 0, found = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     found += is_hit(truth[i]);
-    wrong += is_hit(hits[i]) != is_hit(truth[i]) || (is_hit(hits[i]) && std::abs(hits[i].t - truth[i].t) > 1e-4);
+    wrong += is_hit(hits[i]) != is_hit(truth[i]) || (is_hit(hits[i]) && std::abs(hits[i].t - truth[i].t) > 2e-5);
   }
   CAPTURE(found);
   CHECK(found > test::scaled_cases(400));
