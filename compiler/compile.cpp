@@ -11,22 +11,18 @@
 
 #include "compiler/analysis/area_lights.h"
 #include "compiler/analysis/extent.h"
-#include "compiler/analysis/formula_cells.h"
 #include "compiler/analysis/lints.h"
-#include "compiler/analysis/media.h"
 #include "compiler/analysis/nan_regions.h"
 #include "compiler/analysis/origin.h"
 #include "compiler/derive/derive.h"
+#include "compiler/field_compiler.h"
 #include "compiler/frontend/elaborate/elaborate.h"
 #include "compiler/frontend/read_scene.h"
 #include "compiler/frontend/stage.h"
-#include "compiler/geometry/fits_float.h"
 #include "compiler/graph/rewrite.h"
-#include "compiler/lower/fuse.h"
 #include "compiler/lower/lower.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/signs.h"
-#include "compiler/passes/split.h"
 #include "compiler/scene/framing.h"
 #include "compiler/shapes/blends.h"
 #include "compiler/shapes/bounds.h"
@@ -36,12 +32,6 @@
 
 namespace fathom::compiler {
 namespace {
-
-using OnPass = std::function<void(std::string_view, const Scene&)>;
-
-constexpr std::string_view kGraph = "graph";    // the graph as read
-constexpr std::string_view kOrigin = "origin";  // the first step (compiler/analysis/origin.h)
-constexpr std::string_view kFuse = "fuse";      // the last step, over programs
 
 // Makes a camera that the scene does not place frame the whole scene.
 void place_camera(ElaboratedScene& elaborated, const Box& extent) {
@@ -84,181 +74,9 @@ void find_files(ElaboratedScene& elaborated, const Source& source, const std::st
                     {"a path in a scene begins at the scene's own folder"});
 }
 
-Scene optimise(Scene scene, bool keep_paint, const CompileOptions& options, const OnPass& on_pass) {
-  if (options.stop_after == kGraph) return scene;
-  if (on_pass) on_pass(kOrigin, scene);
-  if (options.stop_after == kOrigin) return scene;
-  for (const Pass& pass : passes()) {
-    if (!(keep_paint && pass.run == strip)) scene = pass.run(scene);
-    if (on_pass) on_pass(pass.name, scene);
-    if (options.stop_after == pass.name) break;
-  }
-  return scene;
-}
-
-bool leaves_float(const Instruction& instruction) {
-  return !std::all_of(instruction.immediates.begin(), instruction.immediates.end(), fits_float);
-}
-
-// Returns the first node whose code has immediates beyond the range of float.
-std::optional<NodeId> node_beyond_float(const Scene& scene) {
-  const std::vector<bool> reached = reachable(scene);
-  for (NodeId id = 0; id < scene.graph.size(); ++id) {
-    if (!reached[id]) continue;
-    const Code code = spec(scene.graph.kind(id)).code(scene.graph.params(id));
-    bool leaves = std::any_of(code.after.begin(), code.after.end(), leaves_float);
-    for (const auto& chain : code.points) leaves = leaves || std::any_of(chain.begin(), chain.end(), leaves_float);
-    if (leaves) return id;
-  }
-  return std::nullopt;
-}
-
-void report_unsound(const Scene& scene, const vm::VerifyError& error, Diagnostics& diagnostics) {
-  if (const std::optional<NodeId> node = node_beyond_float(scene)) {
-    diagnostics.error("E0308", scene.graph.origin(*node).span,
-                      fmt::format("evaluating this takes numbers beyond those of float ({})", error.reason), "",
-                      {"float ends at 3.4e38: make the node's parameters less extreme"});
-    return;
-  }
-  diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                    fmt::format("no machine runs the scene's program: {}", error.reason), "",
-                    {"make the scene smaller, or cut it into several"});
-}
-
-std::optional<vm::VerifiedProgram> assemble(const Scene& scene, const Source& source, bool fused,
-                                            const Limits& limits, Diagnostics& diagnostics) {
-  const auto most = static_cast<std::size_t>(limits.instructions);
-  std::optional<vm::Program> program = lower(scene.graph, scene.root, source, most);
-  if (!program) {
-    diagnostics.error("E0305", scene.graph.origin(scene.root).span,
-                      fmt::format("the scene needs more than {} instructions", most), "",
-                      {"a node used under different transforms is evaluated once for each; use it less often",
-                       raise(&Limits::instructions, 2 * limits.instructions)});
-    return std::nullopt;
-  }
-  auto verified = vm::verify(fused ? fuse(std::move(*program)) : std::move(*program), largest_machine());
-  if (const auto* error = std::get_if<vm::VerifyError>(&verified)) {
-    report_unsound(scene, *error, diagnostics);
-    return std::nullopt;
-  }
-  auto& sound = std::get<vm::VerifiedProgram>(verified);
-  if (auto excess = excess_of(sound, limits)) {
-    diagnostics.error("E0305", scene.graph.origin(scene.root).span, std::move(excess->what), "",
-                      {std::move(excess->remedy)});
-    return std::nullopt;
-  }
-  return std::move(sound);
-}
-
 // True if tags are needed to tell surfaces apart, or to map a point to the coordinates of its node.
 bool needs_tags(std::span<const Surface> surfaces) {
   return surfaces.size() > 1 || std::any_of(surfaces.begin(), surfaces.end(), std::mem_fn(&Surface::placed));
-}
-
-// `scene` and `optimised` are the scene after the passes, with and without Paint, and `known` are the latter's facts.
-// `painted` is true if the surface program needs tags.
-std::optional<CompiledField> compile_field(const Scene& scene, const Scene& optimised,
-                                           const std::vector<NodeFacts>& known, bool painted, const Source& source,
-                                           Diagnostics& diagnostics, const CompileOptions& options) {
-  const bool fused = options.stop_after.value_or(std::string(kFuse)) == kFuse;
-  std::optional<vm::VerifiedProgram> distance = assemble(optimised, source, fused, options.limits, diagnostics);
-  if (!distance) return std::nullopt;
-  std::optional<vm::VerifiedProgram> surface = distance;
-  if (painted) surface = assemble(scene, source, fused, options.limits, diagnostics);
-  if (!surface) return std::nullopt;
-  const NodeFacts& all = known[optimised.root];
-  const FormulaCells cells =
-      formula_cells(optimised.graph, optimised.root, known).value_or(FormulaCells{{}, 0, all.cancellation});
-  return CompiledField{
-      std::move(*distance), std::move(*surface), all.box,       contents(optimised.graph, optimised.root, known),
-      all.lipschitz,        cells.cancellation,  all.certified, cells.box,
-      cells.rest_lipschitz};
-}
-
-// Takes the factor from the root by which `normalise` made it as flat as its neighbours: alone it needs none, and its
-// roots are known the better the steeper it is.
-Scene without_level(Scene scene) {
-  const Graph& graph = scene.graph;
-  const bool painted = graph.kind(scene.root) == Kind::Paint;
-  const NodeId top = painted ? graph.children(scene.root)[0] : scene.root;
-  if (graph.kind(top) != Kind::Scaled) return scene;
-  const NodeId inner = graph.children(top)[0];
-  if (analyse(graph)[inner].lipschitz <= 1) return scene;
-  const NodeId paint = scene.root;
-  const NodeId only[] = {inner};
-  scene.root = painted ? scene.graph.add(Kind::Paint, graph.params(paint), only, graph.origin(paint)) : inner;
-  return scene;
-}
-
-// Compiles the pieces of a scene, none if it is one piece or too many: `optimised` is the scene after the passes,
-// with Paint.
-std::optional<std::vector<CompiledPiece>> compile_pieces(const Scene& optimised, bool painted, const Source& source,
-                                                         Diagnostics& diagnostics, const CompileOptions& options) {
-  std::vector<CompiledPiece> pieces;
-  constexpr std::size_t kMostPieces = 1 << 15;  // each of some kilobytes
-  const Pieces parts = split(optimised);
-  if (parts.nodes.size() < 2 || parts.nodes.size() > kMostPieces) return pieces;
-  for (const NodeId node : parts.nodes) {
-    const Scene surface = fold(affine(without_level(part_of(parts.graph, node)))),
-                distance = fold(affine(strip(surface)));
-    const std::vector<NodeFacts> known = analyse(distance.graph);
-    auto field = compile_field(surface, distance, known, painted, source, diagnostics, options);
-    if (!field) return std::nullopt;
-    pieces.push_back(
-        {*std::move(field), is_convex(distance.graph, distance.root), closed_form(distance.graph, distance.root)});
-  }
-  return pieces;
-}
-
-// Reports that the solids of the transparent materials exceed the limit on `what` at the scene's `node`.
-void report_media(const Graph& graph, NodeId node, std::string_view what, const Limits& limits,
-                  Diagnostics& diagnostics) {
-  diagnostics.error(
-      "E0312", graph.origin(node).span,
-      fmt::format("the solids of the transparent materials have more than {} {} here", limits.media, what), "",
-      {"each transparent material has a solid, its bodies without what outranks them in their box: use fewer of "
-       "these "
-       "materials, or move their bodies apart",
-       raise(&Limits::media, 2 * limits.media)});
-}
-
-// Compiles the interiors of the transparent materials (compiler/analysis/media.h).
-std::optional<std::vector<Medium>> compile_media(const ElaboratedScene& scene, bool painted, const Source& source,
-                                                 Diagnostics& diagnostics, const CompileOptions& options) {
-  const auto most = static_cast<std::size_t>(options.limits.media);
-  MediaMaker maker(scene.scene, scene.surfaces, scene.materials, most);
-  if (maker.excess()) {
-    report_media(maker.graph(), *maker.excess(), "nodes", options.limits, diagnostics);
-    return std::nullopt;
-  }
-  std::vector<Medium> media;
-  std::size_t instructions = 0;
-  for (std::size_t i = 0; i < maker.count(); ++i) {
-    const MediumScene medium = maker.make(i);
-    const Scene inside = optimise(medium.scene, false, options, nullptr);
-    if (has_more_values(inside, most - instructions)) {
-      report_media(maker.graph(), maker.first_body(i), "instructions", options.limits, diagnostics);
-      return std::nullopt;
-    }
-    auto compiled = compile_field(painted ? optimise(medium.scene, true, options, nullptr) : inside, inside,
-                                  analyse(inside.graph), painted, source, diagnostics, options);
-    if (!compiled) return std::nullopt;
-    instructions = std::min(most, instructions + compiled->distance.instructions());
-    media.push_back({std::move(*compiled), medium.material});
-  }
-  return media;
-}
-
-// Compiles the programs of textures. Returns nullopt if a program is too long.
-std::optional<std::vector<vm::VerifiedProgram>> assemble_all(const std::vector<Scene>& formulas, const Source& source,
-                                                             const Limits& limits, Diagnostics& diagnostics) {
-  std::vector<vm::VerifiedProgram> programs;
-  for (const Scene& formula : formulas) {
-    std::optional<vm::VerifiedProgram> program = assemble(formula, source, true, limits, diagnostics);
-    if (!program) return std::nullopt;
-    programs.push_back(std::move(*program));
-  }
-  return programs;
 }
 
 std::size_t count_nodes(const Scene& scene) {
@@ -344,20 +162,17 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
       options.stop_after == kGraph ? glm::dvec3(0) : move_to_origin(*elaborated, known_before, options.origin);
   whole_extent = whole_extent.moved(-origin);
   place_camera(*elaborated, whole_extent);
-  const Scene field = optimise(elaborated->scene, false, options, options.on_pass);
+  const Scene field = optimise(elaborated->scene, false, options.stop_after, options.on_pass);
   const std::vector<NodeFacts> known = analyse(field.graph);
-  const bool tagged = needs_tags(elaborated->surfaces);
-  const Scene painted = tagged || options.pieces ? optimise(elaborated->scene, true, options, nullptr) : Scene{};
-  std::optional<CompiledField> whole = compile_field(painted, field, known, tagged, source, diagnostics, options);
+  const FieldCompiler fields{
+      source, options.limits, options.stop_after, options.pieces, needs_tags(elaborated->surfaces), diagnostics};
+  std::optional<SplitField> whole =
+      fields.compile(field, fields.needs_paint() ? optimise(elaborated->scene, true, options.stop_after) : field);
   if (!whole) return std::nullopt;
   leave_solids(elaborated->camera, whole->distance);
-  std::optional<std::vector<CompiledPiece>> pieces{std::in_place};
-  if (options.pieces) pieces = compile_pieces(painted, tagged, source, diagnostics, options);
-  if (!pieces) return std::nullopt;
-  std::optional<std::vector<Medium>> media = compile_media(*elaborated, tagged, source, diagnostics, options);
+  std::optional<std::vector<Medium>> media = fields.compile_media(*elaborated);
   if (!media) return std::nullopt;
-  std::optional<std::vector<vm::VerifiedProgram>> formulas =
-      assemble_all(elaborated->formulas, source, options.limits, diagnostics);
+  std::optional<std::vector<vm::VerifiedProgram>> formulas = fields.compile_formulas(elaborated->formulas);
   if (!formulas) return std::nullopt;
 
   warn_of_cancellation(field, known, whole->cancellation, elaborated->camera, diagnostics);
@@ -378,7 +193,6 @@ std::optional<CompiledScene> compile(Source source, Diagnostics& diagnostics, co
                        std::move(source),
                        origin,
                        whole_extent,
-                       std::move(*pieces),
                        std::move(*media),
                        std::move(area_lights),
                        std::move(*formulas),
@@ -398,13 +212,18 @@ void restore_pieces(CompiledScene& stored, const Definitions& definitions, const
   options.origin = stored.origin;
   Diagnostics ignored;  // those of the compilation that made the file
   std::optional<CompiledScene> scene = compile(stored.source, ignored, options);
-  const auto words = [](const CompiledScene& of) { return of.surface.program().words; };
-  if (scene && words(*scene) == words(stored)) stored.pieces = std::move(scene->pieces);
+  const auto words = [](const CompiledField& of) { return of.surface.program().words; };
+  if (!scene || words(*scene) != words(stored) || !std::ranges::equal(scene->media, stored.media, {}, words, words))
+    return;
+  stored.pieces = std::move(scene->pieces);
+  for (std::size_t i = 0; i < stored.media.size(); ++i) stored.media[i].pieces = std::move(scene->media[i].pieces);
 }
 
 std::optional<GraphSize> measure(const Scene& scene, const Source& source, const Limits& limits) {
   Diagnostics ignored;
-  const std::optional<vm::VerifiedProgram> program = assemble(scene, source, false, limits, ignored);
+  const std::optional<std::string> stop_after = std::string(kGraph);
+  const std::optional<vm::VerifiedProgram> program =
+      FieldCompiler{source, limits, stop_after, false, false, ignored}.assemble(scene);
   if (!program) return std::nullopt;
   return GraphSize{count_nodes(scene), program->instructions(), program->cost()};
 }

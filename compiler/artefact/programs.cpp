@@ -36,8 +36,8 @@ CompiledScene ProgramList::scene() && {
   const auto field = [this](std::size_t at) {
     return CompiledField{std::move(programs[at]), std::move(programs[at + 1]), {}, {}, 1, 0, false};
   };
-  CompiledScene scene{{}, field(0), {}, glm::dvec3(0), {}, {}, {}, {}, {}, 0, ""};
-  for (std::size_t i = 0; i < media_; ++i) scene.media.push_back({field(2 + 2 * i), 0});
+  CompiledScene scene{{}, {field(0), {}}, {}, glm::dvec3(0), {}, {}, {}, {}, 0, ""};
+  for (std::size_t i = 0; i < media_; ++i) scene.media.push_back({{field(2 + 2 * i), {}}, 0});
   for (std::size_t i = 0; i < formulas_; ++i) scene.formulas.push_back(std::move(programs[2 + 2 * media_ + i]));
   return scene;
 }

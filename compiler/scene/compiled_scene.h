@@ -170,19 +170,23 @@ struct CompiledPiece : CompiledField {
   ClosedForm form;
 };
 
+// A field that may be divided.
+struct SplitField : CompiledField {
+  std::vector<CompiledPiece> pieces;  // in the order of the scene; empty unless CompileOptions::pieces, or if one
+};
+
 // The interior of all bodies of one transparent material (compiler/analysis/media.h).
-struct Medium : CompiledField {
+struct Medium : SplitField {
   std::uint32_t material;  // index into CompiledScene::materials
 };
 
 // All places except those of textures, and including the camera's, are in the programs' coordinates: the scene's
 // minus `origin`. Code that takes or prints places of the scene (runtime/cli, runtime/material/material.h) adds
 // `origin`, which the renderer does not need.
-struct CompiledScene : SceneTables, CompiledField {
+struct CompiledScene : SceneTables, SplitField {
   Source source;
   glm::dvec3 origin{0};       // place in the scene of the programs' zero, scene units (compiler/analysis/origin.h)
   Box extent;                 // of all bounded parts (compiler/analysis/extent.h); empty if there are none
-  std::vector<CompiledPiece> pieces;  // in the order of the scene; empty unless CompileOptions::pieces
   std::vector<Medium> media;  // of the transparent materials, in the materials' order
   std::vector<AreaLight> area_lights;         // in file order; of coincident area lights only the first
   std::vector<vm::VerifiedProgram> formulas;  // of the textures; numbers, not distances, in the scene's coordinates

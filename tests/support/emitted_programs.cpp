@@ -21,7 +21,7 @@ constexpr int kRandomScenes = 8;
 EmittedProgram named(std::string name, vm::Program program, glm::dvec3 origin = glm::dvec3(0)) {
   vm::VerifiedProgram distance = verified(std::move(program));
   compiler::CompiledField field{distance, distance, {}, {}, 1, 0, true};
-  return {name, {{}, std::move(field), compiler::Source(name, ""), origin, {}, {}, {}, {}, {}, 0, "a test's"}};
+  return {name, {{}, {std::move(field), {}}, compiler::Source(name, ""), origin, {}, {}, {}, {}, 0, "a test's"}};
 }
 
 // Returns immediates that are not floats, so that a test notices when the emitter rounds the constants.
