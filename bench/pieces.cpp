@@ -177,7 +177,7 @@ void run(const std::string& path) {
   runtime::add_regions(r.whole, r.scene, regions);
   runtime::add_native_code(r.whole, 1e9);
   r.pieces = r.whole;
-  runtime::add_pieces(r.pieces, r.scene, r.scene.settings.far, true);
+  runtime::add_pieces(r.pieces, r.scene, runtime::extent_of(r.scene), r.scene.settings.far, true);
   Totals totals;
   std::vector<Ray> rays = camera_rays(r);
   for (int bounce = 0; bounce < 3 && !rays.empty(); ++bounce) {

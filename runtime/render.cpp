@@ -93,6 +93,13 @@ int samples_with(const compiler::CompiledScene& scene, const Settings& settings,
   return static_cast<int>(samples);
 }
 
+// Calls use(field) for the field, or for the fields of its pieces.
+template <class Use>
+void for_each_part(const Field& field, const Use& use) {
+  if (field.pieces) return void(std::ranges::for_each(field.pieces->fields, use));
+  use(field);
+}
+
 RenderContext make_context(const compiler::CompiledScene& scene, const Settings& settings,
                            const RenderOptions& options, Clock::time_point start) {
   RenderContext context{scene,
@@ -110,20 +117,20 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
   RegionOptions regions = region_options(share);
   regions.interrupted = interruption(settings, options, start);
   RegionStore* const store = options.region_store.get();
-  if (settings.pieces) {
-    add_pieces(context.field, scene, settings.far, settings.native_code, settings.regions ? &regions : nullptr, store);
-  }
-  if (settings.regions) {
-    // Rays among pieces follow the whole only within solids.
-    if (!context.field.pieces || !scene.media.empty()) add_regions(context.field, scene, regions, store);
-    if (context.field.regions) regions.memory -= context.field.regions->summary().bytes;
-    context.media.add_regions(scene, regions, store);
-  }
-  if (settings.native_code) {
-    const double evaluations = region_options(settings).evaluations;
-    add_native_code(context.field, evaluations);
-    context.media.add_native_code(evaluations);
-  }
+  const double evaluations = region_options(settings).evaluations;
+  const auto prepare = [&](Field& field, const compiler::SplitField& split) {
+    const std::optional<RegionOptions> limited = settings.regions ? std::optional(regions) : std::nullopt;
+    if (settings.pieces)
+      add_pieces(field, split, extent_of(scene), settings.far, settings.native_code, limited ? &*limited : nullptr,
+                 store);
+    if (!field.pieces && settings.regions) add_regions(field, split, regions, store);
+    if (!field.pieces && settings.native_code) add_native_code(field, evaluations);
+    for_each_part(field, [&](const Field& part) {
+      if (part.regions) regions.memory -= std::min(regions.memory, part.regions->summary().bytes);
+    });
+  };
+  prepare(context.field, scene);
+  for (std::size_t i = 0; i < scene.media.size(); ++i) prepare(context.media.field(i), scene.media[i]);
   RealScratch scratch;
   const glm::dvec3 eye = context.camera.position();
   if (is_uniform_around(eye, context.camera.spread(context.filter.radius()), context.field, context.media, scratch)) {
@@ -169,8 +176,8 @@ void count_regions(const RenderContext& context, const RenderOptions& options, S
     stats.region_seconds += reused ? 0 : summary.seconds;
     stats.regions_reused += reused;
   };
-  count(context.field);
-  if (context.field.pieces) std::ranges::for_each(context.field.pieces->fields, count);
+  for_each_part(context.field, count);
+  for (std::size_t i = 0; i < context.media.size(); ++i) for_each_part(context.media.field(i), count);
   stats.region_bytes = std::max(stats.region_bytes, bytes);
 }
 

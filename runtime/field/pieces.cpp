@@ -27,17 +27,17 @@ void PieceTemplate::evaluate(vm::Points points, std::size_t count, const float* 
   vm::evaluate_rows(code, points, count, constants, out, workspace);
 }
 
-void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native,
-                const RegionOptions* regions, RegionStore* store) {
-  if (scene.pieces.size() < 2) return;
+void add_pieces(Field& field, const compiler::SplitField& split, double extent, std::optional<double> far,
+                bool native, const RegionOptions* regions, RegionStore* store) {
+  if (split.pieces.size() < 2) return;
   constexpr double kEvaluations = 1e7;  // enough for machine code to repay
   auto pieces = std::make_shared<Pieces>();
   using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, double, int, bool>;
   std::map<Key, std::uint32_t> known;
   std::vector<compiler::Box> boxes;
   RegionOptions left = regions ? *regions : RegionOptions{};
-  for (const compiler::CompiledPiece& piece : scene.pieces) {
-    Field own = make_field(piece, extent_of(scene), far);
+  for (const compiler::CompiledPiece& piece : split.pieces) {
+    Field own = make_field(piece, extent, far);
     own.convex = false;  // the radius of convexity is for unions
     if (regions && own.far_levels.used()) {
       add_regions(own, piece, left, store);
@@ -65,10 +65,10 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
   }
   if (pieces->templates.size() > kMostTemplates) return;
   pieces->boxes = PieceBoxes(boxes);
-  pieces->rows.resize(scene.pieces.size());
-  for (std::size_t i = 0; i < scene.pieces.size(); ++i) {
+  pieces->rows.resize(split.pieces.size());
+  for (std::size_t i = 0; i < split.pieces.size(); ++i) {
     if (pieces->templates[pieces->template_of[i]].per_lane)
-      pieces->rows[i] = vm::constants_of(scene.pieces[i].distance);
+      pieces->rows[i] = vm::constants_of(split.pieces[i].distance);
   }
   for (PieceTemplate& shared : pieces->templates) {
     if (!native) continue;
@@ -85,6 +85,23 @@ void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optiona
       own.native.surface = vm::NativeProgram::compile(*own.surface, vm::RecordedResults::Surface);
   }
   field.pieces = std::move(pieces);
+}
+
+std::optional<PlaceInSolid> find_solid(const Field& field, glm::dvec3 place, RealScratch& scratch) {
+  std::uint64_t instructions = 0;
+  PlaceInSolid found{0, std::nullopt};
+  if (!field.pieces) {
+    if (field.bound.contains(place)) found.value = field.evaluate(place, scratch, instructions);
+  } else {
+    PieceBoxes::Visit visit;
+    field.pieces->boxes.begin(place, {1, 0, 0}, 0, visit);
+    for (BoxedPiece box; field.pieces->boxes.next(visit, 0, box);) {
+      const auto piece = static_cast<std::uint32_t>(box.piece);
+      const double value = field.pieces->fields[piece].evaluate(place, scratch, instructions);
+      if (value < found.value) found = {value, piece};
+    }
+  }
+  return found.value < 0 ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace fathom::runtime

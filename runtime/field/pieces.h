@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "compiler/geometry/box.h"
@@ -39,10 +40,18 @@ struct Pieces {
   std::vector<PieceTemplate> templates;
 };
 
-// Gives the scene's pieces to its field: rays then meet the pieces, not the whole. A scene of one piece, or of hundreds
-// of templates, stays whole. `native`: with machine code. `regions`: of pieces that gain by them, which share the
-// memory, or null.
-void add_pieces(Field& field, const compiler::CompiledScene& scene, std::optional<double> far, bool native,
-                const RegionOptions* regions = nullptr, RegionStore* store = nullptr);
+// Gives the pieces of `split` to its field: rays then meet the pieces, not the whole. A field of one piece, or of
+// hundreds of templates, stays whole. `extent` and `far` as make_field() takes them. `native`: with machine code.
+// `regions`: of pieces that gain by them, which share the memory, or null.
+void add_pieces(Field& field, const compiler::SplitField& split, double extent, std::optional<double> far,
+                bool native, const RegionOptions* regions = nullptr, RegionStore* store = nullptr);
+
+// A place in the solids of a field.
+struct PlaceInSolid {
+  double value;                        // of the field: below 0
+  std::optional<std::uint32_t> piece;  // the deepest there; nothing in a field without pieces
+};
+// Returns nothing if the field is not below 0 there.
+std::optional<PlaceInSolid> find_solid(const Field& field, glm::dvec3 place, RealScratch& scratch);
 
 }  // namespace fathom::runtime

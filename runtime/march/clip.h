@@ -40,7 +40,7 @@ struct RayBlock {
       direction[axis][i] = ray.direction[axis];
     }
     length[i] = ray.t_max;
-    entry[i] = static_cast<double>(ray.clear);
+    entry[i] = ray.clear;
     slope[i] = ray.slope;
     side[i] = static_cast<std::int8_t>(ray.side);
     id[i] = ray_id;

@@ -9,8 +9,13 @@ namespace {
 constexpr std::size_t kFewRays = 32;
 // Maximum number of rays under way: each has a lane.
 constexpr std::uint32_t kMaxStates = PieceStream::kLanes;
-// Number of no piece, for a ray in the whole field.
-constexpr std::int32_t kWhole = -1;
+// A ray that leaves a piece is in another if it is in it so far beyond the exit, relative to max(1, |p|): a millionth
+// of float's digits, and what double knows of an exit that the ray grazes by a thousandth.
+constexpr double kExitResolution = 0x1p-32;
+// Rounding errors of double by which a ray must be in a piece.
+constexpr double kRoundings = 4;
+// Share of t by which an exit found in float may be off: twice the tolerance of a root (tiered-inl.h).
+constexpr double kExitSlack = 0x1p-15;
 
 }  // namespace
 
@@ -42,16 +47,18 @@ void PieceMarcher::begin(RayBlock& rays) {
     state.roots.clear();
     state.reach = state.ray.length;
     state.miss = RayHit::Status::Miss;
-    state.side = 1;
+    state.exact = false;
     state.evaluations = state.certified = 0;
     state.instructions = 0;
-    const int side = rays.side[i] == 0 ? side_at(state.ray.origin) : rays.side[i];
-    if (side == 1) {
+    state.side = static_cast<std::int8_t>(rays.side[i] == 0 ? side_at(state.ray.origin) : rays.side[i]);
+    if (state.side > 0) {
       pieces_.boxes.begin(state.ray.origin, state.ray.direction, state.ray.length, state.visit);
       ready_.push_back(number);
+    } else if (enter_solid(state, 0)) {
+      start(number);
     } else {
-      state.box.piece = kWhole;
-      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, side, state.slope});
+      state.piece = kWhole;
+      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, -1, state.slope});
     }
   }
 }
@@ -61,9 +68,9 @@ int PieceMarcher::side_at(glm::dvec3 place) {
   if (place == place_) return side_;
   place_ = place;
   side_ = 1;
-  pieces_.boxes.begin(place, {1, 0, 0}, 0, at_place_);
+  pieces_.boxes.begin(place, {1, 0, 0}, 0, around_);
   std::uint64_t instructions = 0;
-  for (BoxedPiece found; side_ == 1 && pieces_.boxes.next(at_place_, 0, found);) {
+  for (BoxedPiece found; side_ == 1 && pieces_.boxes.next(around_, 0, found);) {
     const Field& piece = pieces_.fields[static_cast<std::size_t>(found.piece)];
     if (piece.evaluate(place, real_scratch_, instructions) < 0) side_ = -1;
   }
@@ -73,35 +80,94 @@ int PieceMarcher::side_at(glm::dvec3 place) {
 // Has the ray enter the next box that it has to, or ends it.
 void PieceMarcher::begin_next_piece(std::uint32_t number) {
   RayState& state = states_[number];
-  while (pieces_.boxes.next(state.visit, state.reach, state.box)) {
-    const auto piece = static_cast<std::uint32_t>(state.box.piece);
+  if (state.side < 0) return leave_piece(number);
+  for (BoxedPiece box; pieces_.boxes.next(state.visit, state.reach, box);) {
+    state.piece = box.piece;
+    state.from = static_cast<double>(box.entry), state.to = static_cast<double>(box.exit);
+    const auto piece = static_cast<std::uint32_t>(box.piece);
     const std::uint32_t shared = pieces_.template_of[piece];
     // A ray that leaves a convex solid does not meet it again.
     if (piece == state.leaves && pieces_.templates[shared].convex) continue;
     if (pieces_.forms[piece].shape == compiler::ClosedForm::Shape::None) return start(number);
     if (!proposals_[shared]) proposals_[shared] = std::make_unique<PieceProposals>(pieces_, shared);
     if (proposals_[shared]->size() == PieceProposals::kCapacity) answer(shared);
-    return proposals_[shared]->add(number, state.box.piece, state.ray.origin, state.ray.direction,
-                                   static_cast<double>(state.box.exit), state.reach);
+    return proposals_[shared]->add(number, state.piece, state.ray.origin, state.ray.direction, state.to, state.reach);
   }
   end_ray(number);
+}
+
+double PieceMarcher::value_at(RayState& state, std::uint32_t piece, double t) {
+  ++state.evaluations, ++state.certified;
+  ++counters_.evaluations, ++counters_.certified_evaluations;
+  const glm::dvec3 place = state.ray.origin + t * state.ray.direction;
+  return pieces_.fields[piece].evaluate(place, real_scratch_, state.instructions);
+}
+
+// Has the ray go on in the first piece that it is in at t. Returns false if there is none.
+bool PieceMarcher::enter_solid(RayState& state, double t) {
+  pieces_.boxes.begin(state.ray.origin + t * state.ray.direction, state.ray.direction, state.ray.length - t, around_);
+  for (BoxedPiece box; pieces_.boxes.next(around_, 0, box);) {
+    const auto piece = static_cast<std::uint32_t>(box.piece);
+    const double rounding = pieces_.fields[piece].rounding(state.ray.origin + t * state.ray.direction);
+    if (!(value_at(state, piece, t) < -kRoundings * rounding)) continue;
+    state.piece = box.piece;
+    state.from = t, state.to = t + static_cast<double>(box.exit);
+    return true;
+  }
+  return false;
+}
+
+// Has a ray that has come to the exit of a piece go on in another, or ends it. If it leaves several pieces at one
+// place, the first is hit.
+void PieceMarcher::leave_piece(std::uint32_t number) {
+  RayState& state = states_[number];
+  Root& exit = state.roots.back();
+  const glm::dvec3 place = state.ray.origin + exit.t * state.ray.direction;
+  pieces_.boxes.begin(place, {1, 0, 0}, 0, around_);
+  others_.clear();
+  for (BoxedPiece box; pieces_.boxes.next(around_, 0, box);) {
+    if (box.piece != state.piece) others_.push_back(static_cast<std::uint32_t>(box.piece));
+  }
+  if (others_.empty()) return end_ray(number);
+  if (!state.exact) return search_exit(number);
+  const double beyond = kExitResolution * std::max(1.0, compiler::largest_part(place));
+  if (enter_solid(state, exit.t + beyond)) {
+    state.roots.clear();
+    return start(number);
+  }
+  for (const std::uint32_t other : others_) {
+    if (other < exit.piece && value_at(state, other, exit.t - beyond) < 0) exit.piece = other;
+  }
+  end_ray(number);
+}
+
+// Finds the exit from the piece again, in double.
+void PieceMarcher::search_exit(std::uint32_t number) {
+  const RayState& state = states_[number];
+  const Root& exit = state.roots.back();
+  const double t = exit.t - state.from, slack = kExitSlack * exit.t + static_cast<double>(exit.width);
+  const ClippedRay part{state.ray.origin + state.from * state.ray.direction, state.ray.direction, state.from,
+                        state.to - state.from, number};
+  searches_.certify_from(pieces_.fields[static_cast<std::size_t>(state.piece)], part, -1,
+                         {std::max(0.0, t - slack), part.length, std::min(part.length, t + slack)}, 0, 0);
 }
 
 // Has the ray march through its box.
 void PieceMarcher::start(std::uint32_t number) {
   const RayState& state = states_[number];
-  const auto piece = static_cast<std::uint32_t>(state.box.piece);
+  const auto piece = static_cast<std::uint32_t>(state.piece);
   const std::uint32_t shared = pieces_.template_of[piece];
-  const double begin = static_cast<double>(state.box.entry),
-               end = std::min(static_cast<double>(state.box.exit), state.reach);
-  const float slope = piece == state.leaves ? state.slope : -1.0f;
+  const double begin = state.from, end = std::min(state.to, state.reach);
+  const bool departs = piece == state.leaves || (state.side < 0 && begin == 0);
+  const float slope = departs ? state.slope : -1.0f;
   if (pieces_.templates[shared].runs_program) {
     if (!streams_[shared]) streams_[shared] = std::make_unique<PieceStream>(pieces_, shared, marching_);
-    return streams_[shared]->start(number, state.box.piece, state.ray.origin, state.ray.direction, begin, end, slope);
+    return streams_[shared]->start(number, state.piece, state.ray.origin, state.ray.direction, begin, end, state.side,
+                                   slope);
   }
   if (!own_[shared]) own_[shared] = std::make_unique<Stream<float>>(pieces_.fields[piece], marching_);
   while (own_[shared]->room() == 0) advance(*own_[shared]);
-  own_[shared]->add(number, {state.ray.origin, state.ray.direction, end, 1, slope, state.box.entry});
+  own_[shared]->add(number, {state.ray.origin, state.ray.direction, end, state.side, slope, begin});
 }
 
 // Ends the template's proposals. Rays whose roots the field does not confirm march.
@@ -130,17 +196,17 @@ void PieceMarcher::advance_stream(std::uint32_t shared, std::size_t few) {
   const std::uint64_t instructions = pieces_.templates[shared].code.instructions;
   for (const PieceStream::Ended& each : ended_) {
     const RayState& state = states_[each.ray];
-    const double begin = static_cast<double>(state.box.entry);
+    const double begin = state.from;
     if (each.verdict == LaneVerdict::Certify) {
       const ClippedRay part{state.ray.origin + begin * state.ray.direction, state.ray.direction, begin, each.rest.end,
                             each.ray};
-      searches_.certify_from(pieces_.fields[static_cast<std::size_t>(state.box.piece)], part, 1, each.rest,
+      searches_.certify_from(pieces_.fields[static_cast<std::size_t>(state.piece)], part, state.side, each.rest,
                              each.evaluations, each.evaluations * instructions);
       continue;
     }
     const bool hit = each.verdict == LaneVerdict::Hit;
     const RayHit::Status miss = each.verdict == LaneVerdict::Invalid ? RayHit::Status::Invalid : RayHit::Status::Miss;
-    end_piece({each.ray, hit ? RayHit::Status::Hit : miss, 1, each.evaluations, 0, hit ? each.width : 0.0f,
+    end_piece({each.ray, hit ? RayHit::Status::Hit : miss, state.side, each.evaluations, 0, hit ? each.width : 0.0f,
                begin + static_cast<double>(each.root), each.evaluations * instructions});
   }
 }
@@ -158,12 +224,15 @@ void PieceMarcher::end_piece(const RayHit& found) {
   state.instructions += found.instructions;
   state.side = found.side;
   if (found.status == RayHit::Status::Hit) {
-    state.roots.push_back({found.t, found.width, static_cast<std::uint32_t>(state.box.piece), found.side});
-    state.reach = std::min(state.reach, found.t + static_cast<double>(found.width));
+    if (state.side < 0) state.roots.clear();  // of an exit before it was searched in double
+    state.roots.push_back({found.t, found.width, static_cast<std::uint32_t>(state.piece), found.side});
+    if (state.side > 0) state.reach = std::min(state.reach, found.t + static_cast<double>(found.width));
+    state.exact = found.certified > 0;
   } else if (found.status != RayHit::Status::Miss && state.miss != RayHit::Status::Invalid) {
     state.miss = found.status;
   }
-  if (state.box.piece == kWhole) return end_ray(found.id);
+  if (state.piece == kWhole) return end_ray(found.id);
+  if (state.side < 0 && found.status != RayHit::Status::Hit) return end_ray(found.id);
   ready_.push_back(found.id);
 }
 

@@ -5,7 +5,8 @@
 // the next box lies beyond its hit. Its hit depends on the ray and the pieces alone. If several roots lie within
 // their brackets, the piece that comes first in the scene is hit: coincident faces have one surface.
 //
-// Rays within solids follow the whole field.
+// A ray within a solid follows a piece that it is in to its exit, goes on in another that the exit lies in, and ends
+// at the exit that lies in none.
 // Not a public header: march.h is. Tested by: tests/runtime/march/piece_marcher_test.cpp
 #pragma once
 
@@ -38,15 +39,18 @@ class PieceMarcher final : public Marcher {
     std::uint32_t piece;
     std::int8_t side;
   };
+  static constexpr std::int32_t kWhole = -1;  // in the place of a piece: the whole field
   // A ray under way. Its number is the id of its part within a piece.
   struct RayState {
     ClippedRay ray;
     float slope;
     std::uint32_t leaves;  // piece whose surface the ray leaves outwards, or kNoPiece
-    BoxedPiece box;        // of the piece that the ray is in; if it follows the whole field, of no piece
+    std::int32_t piece;    // that the ray is in, or kWhole
+    double from, to;       // the part of the ray there
     PieceBoxes::Visit visit;
-    std::vector<Root> roots;  // in the order in which they were found
+    std::vector<Root> roots;  // in the order in which they were found; of a solid only the last
     double reach;             // no root beyond matters
+    bool exact;               // a solid's: the root was found in double
     RayHit::Status miss;      // status without a root
     std::int8_t side;
     std::uint32_t evaluations, certified;
@@ -67,6 +71,10 @@ class PieceMarcher final : public Marcher {
   void step() override;
   int side_at(glm::dvec3 place);
   void begin_next_piece(std::uint32_t number);
+  bool enter_solid(RayState& state, double t);
+  void leave_piece(std::uint32_t number);
+  double value_at(RayState& state, std::uint32_t piece, double t);
+  void search_exit(std::uint32_t number);
   void start(std::uint32_t number);
   void answer(std::uint32_t shared);
   void advance_stream(std::uint32_t shared, std::size_t few);
@@ -90,7 +98,8 @@ class PieceMarcher final : public Marcher {
   std::vector<RayHit> found_;
   glm::dvec3 place_{std::numeric_limits<double>::quiet_NaN()};  // where side_at() was asked last
   int side_ = 1;                                                // there
-  PieceBoxes::Visit at_place_;
+  PieceBoxes::Visit around_;                                    // the boxes around a place
+  std::vector<std::uint32_t> others_;                           // pieces around an exit
 };
 
 }  // namespace fathom::runtime

@@ -26,7 +26,7 @@ PieceStream::PieceStream(const Pieces& pieces, std::uint32_t number, const March
 }
 
 void PieceStream::start(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin, glm::dvec3 direction, double begin,
-                        double end, float slope) {
+                        double end, int side, float slope) {
   ++live_;
   std::size_t lane = lanes_used_;
   if (free_lanes_.empty()) {
@@ -46,7 +46,7 @@ void PieceStream::start(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin
   for (const LaneRow zero : {kPhase, kTNext, kEvaluations, kT, kG, kR, kBackoffCount}) put(zero, 0);
   put(kTMax, static_cast<float>((end - begin) * (1 - 0x1p-24)));
   put(kBefore, static_cast<float>(begin));
-  put(kSide, 1);
+  put(kSide, static_cast<float>(side));
   put(kM, std::clamp(slope, -1.0f, 0.9f));
   put(kBackoff, static_cast<float>(kFirstBackoff));
   ray_[lane] = ray;

@@ -26,10 +26,10 @@ class PieceStream {
   PieceStream(const Pieces& pieces, std::uint32_t number, const Marching& marching);
 
   std::size_t live() const { return live_; }
-  // Starts the ray of this number in a piece, outside of the solid: its part from `begin` to `end`, distances from
-  // its origin. Requires live() < kLanes.
+  // Starts the ray of this number in a piece, on this side of its surface: the ray's part from `begin` to `end`,
+  // distances from its origin. Requires live() < kLanes.
   void start(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin, glm::dvec3 direction, double begin, double end,
-             float slope);
+             int side, float slope);
 
   // A ray that has ended, with distances from where its part begins.
   struct Ended {

@@ -18,7 +18,7 @@ struct Ray {
   // dg/dt expected at the origin, relative to the field's Lipschitz constant, in [-1,1]: dot(gradient, direction)
   // when the ray leaves a surface. A guess too high only makes the first step fail.
   float slope = -1;
-  float clear = 0;  // no surface lies nearer than this along the ray, scene units; above 0 only outside solids
+  double clear = 0;  // no surface lies nearer than this along the ray, scene units
   std::uint32_t leaves =
       kNoPiece;  // piece of the scene whose surface the ray leaves outwards (runtime/field/pieces.h)
 };

@@ -20,12 +20,8 @@ class Media {
 
   std::size_t size() const { return media_.size(); }
   const Field& field(std::size_t medium) const { return media_[medium].field; }
+  Field& field(std::size_t medium) { return media_[medium].field; }
   std::uint32_t material(std::size_t medium) const { return media_[medium].material; }
-  // Regions of every medium, as runtime::add_regions() builds them. Together they take no more memory than the
-  // options allow.
-  void add_regions(const compiler::CompiledScene& scene, RegionOptions options, RegionStore* store);
-  // Machine code of every medium, as runtime::add_native_code() makes it.
-  void add_native_code(double evaluations);
 
   // The medium that fills the place, in scene units of the programs; nothing in the open and within what is opaque.
   std::optional<std::uint32_t> at(glm::dvec3 place, RealScratch& scratch) const;

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "runtime/field/pieces.h"
+
 namespace fathom::runtime {
 namespace {
 
@@ -18,8 +20,7 @@ MediumState no_medium(const RenderContext& context, const SurfaceInteraction& su
   MediumState state;
   state.side = 1;
   if (surface.inside) return state;
-  std::uint64_t instructions = 0;
-  if (context.field.evaluate(place, scratch, instructions) >= 0) return state;
+  if (!find_solid(context.field, place, scratch)) return state;
   state.side = -1;
   if (surface.material->has_interior()) {
     state.ior = surface.material->ior;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "runtime/field/pieces.h"
 #include "runtime/path/surface.h"
 
 namespace fathom::runtime {
@@ -24,7 +25,10 @@ MaterialPoint interior_at(glm::dvec3 place, std::uint32_t medium, const Media& m
                           RealScratch& scratch) {
   const std::uint32_t material = media.material(medium);
   if (!materials.uses_object_space(material)) return materials.at(material, place, place, scratch.workspace);
-  const vm::SurfacePlace found = find_object_point(materials.scene(), media.field(medium), place, scratch);
+  const Field& whole = media.field(medium);
+  const std::optional<PlaceInSolid> solid = find_solid(whole, place, scratch);
+  const Field& field = solid && solid->piece ? whole.pieces->fields[*solid->piece] : whole;
+  const vm::SurfacePlace found = find_object_point(materials.scene(), field, place, scratch);
   return materials.at(material, place, found.place, scratch.workspace);
 }
 

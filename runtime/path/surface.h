@@ -75,7 +75,7 @@ inline void set_spawned_ray(const Hit& hit, const SurfacePoint& point, glm::dvec
   ray.side = through ? -hit.side : hit.side;
   ray.slope = std::abs(cosine) * point.steepness;
   const bool leaves = !through && cosine > kMinLeaving;
-  ray.clear = leaves ? point.clear : 0;
+  ray.clear = leaves ? static_cast<double>(point.clear) : 0;
   ray.leaves = leaves ? hit.piece : kNoPiece;
 }
 inline Ray spawn_ray(const Hit& hit, const SurfacePoint& point, glm::dvec3 direction, bool through) {
