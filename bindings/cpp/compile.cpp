@@ -81,7 +81,9 @@ Error compile_text(const compiler::Source& source, const CompileOptions& options
 // text. `foreign`: see Scene::Data.
 Error read_compiled(const std::string& bytes, const std::string& path, const CompileOptions& options, bool foreign,
                     Compiled& out) {
-  auto read = compiler::read_stored({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path);
+  const compiler::Limits limits = limits_of(options);
+  auto read =
+      compiler::read_stored({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, path, limits);
   if (const auto* fault = std::get_if<compiler::FileError>(&read)) {
     return {Error::Kind::BadScene, fmt::format("{}: {}", path, fault->reason)};
   }
@@ -97,7 +99,6 @@ Error read_compiled(const std::string& bytes, const std::string& path, const Com
     definitions.insert(definitions.end(), options.parameters.begin(), options.parameters.end());
     return compile_text(stored.scene.source, options, std::move(definitions), {}, out);
   }
-  const compiler::Limits limits = limits_of(options);
   if (const auto excess = compiler::excess_of(stored.scene, limits)) {
     return {Error::Kind::BadScene, fmt::format("{}: {}", path, excess->what)};
   }

@@ -28,10 +28,13 @@ bool is_identity(std::span<const double> transform) {
 // Walks the graph from the root to the bodies. Visits a shared node once per combination of place and Paint.
 class BodyFinder {
  public:
-  BodyFinder(const Scene& scene, const std::vector<Painted>& below, std::size_t most)
-      : graph_(scene.graph), below_(below), most_(most), around_(1), shared_(scene.root + 1) {
+  BodyFinder(const Scene& scene, std::size_t most)
+      : graph_(scene.graph), most_(most), around_(1), shared_(scene.root + 1), divides_(scene.root + 1) {
     std::vector<bool> used(scene.root + 1);
     for (NodeId id = 0; id <= scene.root; ++id) {
+      const Kind kind = graph_.kind(id);
+      divides_[id] = kind == Kind::Union ||
+                     ((kind == Kind::Transform || kind == Kind::Paint) && divides_[graph_.children(id)[0]]);
       for (const NodeId child : graph_.children(id)) {
         shared_[child] = shared_[child] || used[child];
         used[child] = true;
@@ -72,12 +75,10 @@ class BodyFinder {
   // Limit on visits, and on uses of Transform and Paint nodes, per node that the caller allows.
   static constexpr std::size_t kWork = 8;
 
-  static bool divides(Kind kind) { return kind == Kind::Union || kind == Kind::Transform || kind == Kind::Paint; }
-
   void visit(const Part& part) {
     const Around& around = around_[part.around];
     if (shared_[part.node] && !visited_.insert({part.node, around.place, around.paint}).second) return;
-    if (!below_[part.node].uneven() || !divides(graph_.kind(part.node))) {
+    if (!divides_[part.node]) {
       added_ += around.length;
       parts_.push_back(part);
       return;
@@ -106,10 +107,10 @@ class BodyFinder {
   }
 
   const Graph& graph_;
-  const std::vector<Painted>& below_;
   const std::size_t most_;
   std::vector<Around> around_;
-  std::vector<bool> shared_;  // [node] true if the graph uses it more than once
+  std::vector<bool> shared_;   // [node] true if the graph uses it more than once
+  std::vector<bool> divides_;  // [node] true for a union, moved or painted as it may be
   std::vector<Part> pending_, parts_;
   std::size_t added_ = 0;  // Transform and Paint nodes around the parts, summed over the parts
   std::set<std::tuple<NodeId, std::uint32_t, std::uint32_t>> visited_;
@@ -142,7 +143,7 @@ std::vector<Painted> painted_below(const Scene& scene, std::span<const Surface> 
 std::optional<std::vector<Body>> find_bodies(const Scene& scene, const std::vector<Painted>& below,
                                              std::span<const Surface> surfaces, std::span<const Material> materials,
                                              std::size_t most, Graph& graph) {
-  BodyFinder finder(scene, below, most);
+  BodyFinder finder(scene, most);
   if (!finder.run()) return std::nullopt;
   std::vector<Body> bodies;
   for (const BodyFinder::Part& part : finder.parts()) {

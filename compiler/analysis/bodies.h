@@ -1,4 +1,4 @@
-// Bodies: the parts of a scene with one material each, as far as unions and transforms separate them.
+// Bodies: the parts of a scene that unions separate, also below transforms and Paint.
 // compiler/analysis/media.h makes solids of bodies.
 // Tested by: tests/compiler/analysis/media_test.cpp
 #pragma once

@@ -64,21 +64,22 @@ MediaMaker::MediaMaker(const Scene& scene, std::span<const Surface> surfaces, st
   }
 }
 
-// Collects the bodies `own` of a material, and the bodies that outrank them and may overlap them.
+// Groups the bodies `own` of a material by the bodies that outrank them and may overlap them.
 MediaMaker::Medium MediaMaker::medium(std::span<const std::uint32_t> own, const Places& places) {
-  const Body& sample = bodies_[own[0]];
-  Medium medium{sample.material, {}, {}};
-  Box box;
-  for (const std::uint32_t body : own) {
-    medium.own.push_back(bodies_[body].node);
-    box = unite(box, places.boxes[body]);
-  }
+  Medium medium{bodies_[own[0]].material, {}};
+  std::map<std::vector<NodeId>, std::size_t> group_of;  // [cuts]
   std::vector<std::uint32_t> near;
-  looks_ += places.tree.find(box, near);
-  for (const std::uint32_t i : near) {
-    const Body& body = bodies_[i];
-    const bool is_own = body.transparent && body.material == sample.material;
-    if (!is_own && outranks(body, sample, materials_)) medium.cuts.push_back(body.node);
+  for (const std::uint32_t one : own) {
+    std::vector<NodeId> cuts;
+    looks_ += places.tree.find(places.boxes[one], near);
+    for (const std::uint32_t i : near) {
+      const Body& body = bodies_[i];
+      const bool is_own = body.transparent && body.material == medium.material;
+      if (!is_own && outranks(body, bodies_[one], materials_)) cuts.push_back(body.node);
+    }
+    const auto [found, is_new] = group_of.try_emplace(cuts, medium.groups.size());
+    if (is_new) medium.groups.push_back({{}, std::move(cuts)});
+    medium.groups[found->second].own.push_back(bodies_[one].node);
   }
   return medium;
 }
@@ -90,8 +91,10 @@ const std::vector<NodeId>& MediaMaker::reached(const Medium& medium) {
   const auto reach = [&](NodeId node) {
     if (std::exchange(walk_of_[node], walk_) != walk_) reached_.push_back(node);
   };
-  for (const NodeId node : medium.own) reach(node);
-  for (const NodeId node : medium.cuts) reach(node);
+  for (const Group& group : medium.groups) {
+    for (const NodeId node : group.own) reach(node);
+    for (const NodeId node : group.cuts) reach(node);
+  }
   for (std::size_t i = 0; i < reached_.size(); ++i) {
     for (const NodeId child : graph_.children(reached_[i])) reach(child);
   }
@@ -114,12 +117,22 @@ MediumScene MediaMaker::make(std::size_t i) {
     const NodeId copy = scene.graph.add(graph_.kind(node), graph_.params(node), children, graph_.origin(node));
     CHECK(copy == copied(node), "different nodes stay different");
   }
-  std::vector<NodeId> own, operands;
-  for (const NodeId node : medium.own) own.push_back(copied(node));
-  const SourceLocation origin = graph_.origin(medium.own[0]);
-  operands.push_back(own.size() == 1 ? own[0] : scene.graph.add(Kind::Union, {}, own, origin));
-  for (const NodeId node : medium.cuts) operands.push_back(copied(node));
-  scene.root = operands.size() == 1 ? operands[0] : scene.graph.add(Kind::Subtraction, {}, operands, origin);
+  const auto all_copied = [&](const std::vector<NodeId>& of) {
+    std::vector<NodeId> all;
+    for (const NodeId node : of) all.push_back(copied(node));
+    return all;
+  };
+  const SourceLocation origin = graph_.origin(medium.groups[0].own[0]);
+  const auto unite_all = [&](const std::vector<NodeId>& all) {
+    return all.size() == 1 ? all[0] : scene.graph.add(Kind::Union, {}, all, origin);
+  };
+  std::vector<NodeId> arms;
+  for (const Group& group : medium.groups) {
+    std::vector<NodeId> operands = {unite_all(all_copied(group.own))};
+    for (const NodeId cut : group.cuts) operands.push_back(copied(cut));
+    arms.push_back(operands.size() == 1 ? operands[0] : scene.graph.add(Kind::Subtraction, {}, operands, origin));
+  }
+  scene.root = unite_all(arms);
   return {medium.material, std::move(scene)};
 }
 

@@ -2,10 +2,10 @@
 //
 // The scene's field is a union, so it has no surface where a drink meets its glass, or a glass meets the table it
 // stands on. Rays within a transparent body are marched against a separate solid instead: the union of all bodies of
-// the material, minus overlapping bodies of higher rank. Opaque bodies rank highest. Transparent bodies rank by
-// `priority`, then by the order of their materials in the file (after Schmidt and Budge, "Simple Nested Dielectrics
-// in Ray Traced Images", Journal of Graphics Tools 7(2), 2002).
-// Tested by: tests/compiler/analysis/media_test.cpp
+// the material, each minus the bodies of higher rank that may overlap it. Opaque bodies rank highest. Transparent
+// bodies rank by `priority`, then by the order of their materials in the file (after Schmidt and Budge, "Simple
+// Nested Dielectrics in Ray Traced Images", Journal of Graphics Tools 7(2), 2002). Tested by:
+// tests/compiler/analysis/media_test.cpp
 #pragma once
 
 #include <cstdint>
@@ -41,13 +41,17 @@ class MediaMaker {
   const Graph& graph() const { return graph_; }  // holds excess() and the bodies
 
   std::size_t count() const { return media_.size(); }
-  NodeId first_body(std::size_t i) const { return media_[i].own[0]; }
+  NodeId first_body(std::size_t i) const { return media_[i].groups[0].own[0]; }
   MediumScene make(std::size_t i);
 
  private:
+  // Nodes of bodies: some that the same cuts may overlap.
+  struct Group {
+    std::vector<NodeId> own, cuts;
+  };
   struct Medium {
     std::uint32_t material;
-    std::vector<NodeId> own, cuts;  // nodes of bodies
+    std::vector<Group> groups;
   };
   struct Places;
   Medium medium(std::span<const std::uint32_t> own, const Places& places);

@@ -41,7 +41,8 @@ Bytes write_code(const CompiledScene& scene) {
   vm::ByteWriter out;
   out.u32(static_cast<std::uint32_t>(scene.media.size()));
   out.u32(static_cast<std::uint32_t>(scene.formulas.size()));
-  for (const NamedProgram& row : programs_of(scene)) vm::write_program(out, *row.program);
+  vm::ProgramEncoder encoder;
+  for (const NamedProgram& row : programs_of(scene)) encoder.write(out, *row.program);
   return out.take();
 }
 
@@ -53,7 +54,8 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 Bytes write_debug(const CompiledScene& scene) {
   vm::ByteWriter out;
   for (const NamedProgram& row : programs_of(scene)) {
-    vm::write_debug(out, *row.program, file_name(row.program->program().source_name));
+    const vm::Program& program = row.program->program();
+    vm::write_debug(out, {file_name(program.source_name), program.debug});
   }
   return out.take();
 }
@@ -80,22 +82,30 @@ FileError damaged(std::string_view section, std::string_view what) {
   return {fmt::format("the section `{}` {}", section, what), "it was changed or damaged: compile the scene again"};
 }
 
-std::variant<ProgramList, FileError> read_code(std::span<const std::uint8_t> bytes) {
+std::variant<ProgramList, FileError> read_code(std::span<const std::uint8_t> bytes, const Limits& limits) {
+  // Words per instruction that most programs stay below, and the number of programs of the greatest size.
+  constexpr double kWords = 16, kPrograms = 4;
   vm::ByteReader in(bytes);
   const std::size_t media = in.u32(), formulas = in.u32();
   // A program takes 20 bytes at least.
   const bool room = media <= bytes.size() / 40 && formulas <= bytes.size() / 20;
   if (in.failed() || !room) return damaged("code", "is cut off");
   ProgramList list(media, formulas);
+  vm::ProgramDecoder decoder;
+  vm::Limits machine = largest_machine();
+  const double most = kWords * limits.instructions;
+  double left = kPrograms * most;
   while (!list.full()) {
     const std::size_t begin = in.offset();
-    auto program = vm::read_program(in, largest_machine());
+    machine.words = static_cast<std::uint32_t>(std::min({static_cast<double>(machine.words), most, left}));
+    auto program = decoder.read(in, machine);
     if (const auto* error = std::get_if<vm::VerifyError>(&program)) {
       return FileError{fmt::format("program `{}` at byte {} of the code, word {}: {}", list.next(), begin,
                                    error->offset, error->reason),
                        ""};
     }
     list.add(std::get<vm::VerifiedProgram>(std::move(program)));
+    left -= static_cast<double>(list.programs.back().program().words.size());
   }
   if (in.left() > 0) return damaged("code", fmt::format("goes on for {} bytes after its last program", in.left()));
   return list;
@@ -211,13 +221,14 @@ std::optional<FileError> read_tables(std::span<const std::uint8_t> bytes, Compil
 }
 
 // Reads the scene of the file `path`.
-std::variant<CompiledScene, FileError> read_scene(const Sections& file, const std::string& path) {
+std::variant<CompiledScene, FileError> read_scene(const Sections& file, const std::string& path,
+                                                  const Limits& limits) {
   if (file.opcodes != vm::opcode_digest()) {
     return FileError{"its programs are for another machine than this program's",
                      file.text ? "it holds its scene: `fathom compile` makes it anew"
                                : "it holds no scene to compile again: use the program it was made with"};
   }
-  auto read = read_code(file.code);
+  auto read = read_code(file.code, limits);
   if (auto* error = std::get_if<FileError>(&read)) return std::move(*error);
   auto& list = std::get<ProgramList>(read);
   if (auto error = read_debug(file.debug, list)) return *std::move(error);
@@ -275,11 +286,12 @@ std::vector<std::uint8_t> write_file(const CompiledScene& scene, const FileConte
   return out.take();
 }
 
-std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes, const std::string& path) {
+std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes, const std::string& path,
+                                                 const Limits& limits) {
   auto opened = open_file(bytes);
   if (auto* error = std::get_if<FileError>(&opened)) return std::move(*error);
   auto& file = std::get<Sections>(opened);
-  auto scene = read_scene(file, path);
+  auto scene = read_scene(file, path, limits);
   if (auto* error = std::get_if<FileError>(&scene)) return std::move(*error);
   return StoredScene{std::get<CompiledScene>(std::move(scene)),
                      {!file.debug.empty(), file.text.has_value(), std::move(file.definitions)}};

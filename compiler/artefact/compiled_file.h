@@ -22,12 +22,13 @@
 
 #include "compiler/frontend/records/parameters.h"
 #include "compiler/scene/compiled_scene.h"
+#include "compiler/source/limits.h"
 #include "vm/encoding/digest.h"
 
 namespace fathom::compiler {
 
 inline constexpr std::array<std::uint8_t, 8> kFileMagic = {0x89, 'F', 'B', 'C', '\r', '\n', 0x1a, '\n'};
-inline constexpr std::uint32_t kFileVersion = 5;
+inline constexpr std::uint32_t kFileVersion = 6;
 
 // Contents of a file in addition to programs and tables.
 struct FileContents {
@@ -51,9 +52,10 @@ struct StoredScene {
   CompiledScene scene;  // `bound`, `lipschitz` and the other facts are claims
   FileContents contents;
 };
-// Reads the file `path`. Refuses programs for another table of opcodes.
+// Reads the file `path`. Refuses programs for another table of opcodes, and more words than programs within `limits`
+// have: a few bytes of rows can ask for any number.
 [[nodiscard]] std::variant<StoredScene, FileError> read_stored(std::span<const std::uint8_t> bytes,
-                                                               const std::string& path);
+                                                               const std::string& path, const Limits& limits = {});
 
 // The text of a file, whose programs may be for another table of opcodes.
 struct StoredText {

@@ -87,8 +87,12 @@ class Words {
 
 class ListingReader {
  public:
-  ListingReader(const Source& source, Diagnostics& diagnostics)
-      : source_(source), text_(source.text()), diagnostics_(diagnostics) {}
+  ListingReader(const Source& source, Diagnostics& diagnostics, const Limits& limits)
+      : source_(source),
+        text_(source.text()),
+        diagnostics_(diagnostics),
+        most_(static_cast<std::size_t>(limits.instructions)),
+        left_(kPrograms * most_) {}
 
   // Reads a whole file. The programs come first, because the tables are checked against them.
   std::optional<CompiledScene> read_all(FileContents& contents) {
@@ -229,7 +233,7 @@ class ListingReader {
   }
 
   std::optional<vm::VerifiedProgram> assemble(std::size_t begin, std::size_t end) {
-    auto program = vm::assemble(std::string_view(text_).substr(begin, end - begin));
+    auto program = vm::assemble(std::string_view(text_).substr(begin, end - begin), nullptr, std::min(most_, left_));
     if (const auto* wrong = std::get_if<vm::AssembleError>(&program)) {
       return refuse_line(begin, *wrong);
     }
@@ -237,7 +241,9 @@ class ListingReader {
     if (const auto* wrong = std::get_if<vm::VerifyError>(&verified)) {
       return error_at<vm::VerifiedProgram>(line_of_word(begin, end, wrong->offset), wrong->reason);
     }
-    return std::get<vm::VerifiedProgram>(std::move(verified));
+    auto& sound = std::get<vm::VerifiedProgram>(verified);
+    left_ -= std::min<std::size_t>(left_, sound.instructions());
+    return std::move(sound);
   }
 
   std::optional<vm::VerifiedProgram> refuse_line(std::size_t begin, const vm::AssembleError& wrong) {
@@ -256,13 +262,15 @@ class ListingReader {
 
   // Returns the line of the instruction that the word belongs to: the assembler knows words, people know lines.
   Span line_of_word(std::size_t begin, std::size_t end, std::uint32_t word) const {
+    std::vector<std::size_t> lines;
+    const auto program =
+        std::get<vm::Program>(vm::assemble(std::string_view(text_).substr(begin, end - begin), &lines, most_));
     std::size_t words = 0;
-    for (std::size_t at = begin; at < end;) {
-      const std::size_t line_end = std::min(text_.find('\n', at), end);
-      const auto line = vm::assemble(std::string_view(text_).substr(at, line_end - at));
-      if (const auto* program = std::get_if<vm::Program>(&line)) words += program->words.size();
-      if (words > word) return span(at + std::min(text_.find_first_not_of(' ', at), line_end) - at, line_end);
-      at = line_end + 1;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      words += vm::instruction_length(program.words[words]);
+      if (words <= word) continue;
+      const std::size_t at = begin + lines[i], line_end = std::min(text_.find('\n', at), end);
+      return span(std::min(text_.find_first_not_of(' ', at), line_end), line_end);
     }
     return span(end, end);
   }
@@ -337,6 +345,8 @@ class ListingReader {
   const Source& source_;
   const std::string& text_;
   Diagnostics& diagnostics_;
+  static constexpr std::size_t kPrograms = 4;  // number of programs of the greatest size
+  std::size_t most_, left_;                    // instructions of a program with rows, and of all that follow
   std::size_t programs_begin_ = 0;
   std::vector<Span> bodies_;  // [program]
   bool text_found_ = false;
@@ -371,8 +381,9 @@ std::string write_listing(const CompiledScene& scene, const FileContents& conten
   return out;
 }
 
-std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents) {
-  ListingReader reader(listing, diagnostics);
+std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents,
+                                          const Limits& limits) {
+  ListingReader reader(listing, diagnostics, limits);
   return Words(listing.text(), 0).next() == kListingHead ? reader.read_all(contents) : reader.read_one(contents);
 }
 

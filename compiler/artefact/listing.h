@@ -29,6 +29,7 @@ namespace fathom::compiler {
 std::string write_listing(const CompiledScene& scene, const FileContents& contents = {});
 
 // Returns nothing after reporting an error. Sets `contents` to the contents of the listing.
-std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents);
+std::optional<CompiledScene> read_listing(const Source& listing, Diagnostics& diagnostics, FileContents& contents,
+                                          const Limits& limits = {});
 
 }  // namespace fathom::compiler

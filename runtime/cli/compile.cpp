@@ -125,7 +125,7 @@ int run_asm(std::span<const std::string> args, const Streams& streams) {
   }
   compiler::Diagnostics diagnostics;
   compiler::FileContents contents;
-  const auto scene = compiler::read_listing(listing, diagnostics, contents);
+  const auto scene = compiler::read_listing(listing, diagnostics, contents, limits);
   streams.err << diagnostics.print(listing, static_cast<compiler::ErrorFormat>(error_format), streams.color);
   if (!scene) return kBadScene;
   if (const auto excess = compiler::excess_of(*scene, limits)) {

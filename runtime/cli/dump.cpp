@@ -2,6 +2,8 @@
 // Tested by: tests/runtime/cli/cli_dump_test.cpp
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <limits>
 #include <ostream>
 
 #include "compiler/artefact/listing.h"
@@ -46,6 +48,7 @@ struct DumpRequest {
   std::optional<std::string> after;
   std::optional<glm::dvec3> region, at;
   std::string other;  // second operand of --diff; empty: --diff compares the passes
+  std::optional<NumberRange> rows;
   bool stats = false, diff = false, run = false;
 };
 
@@ -94,6 +97,10 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
   if ((request.stats || request.diff) && request.format > kText) {
     return refuse(fmt::format("{} is text", request.stats ? "--stats" : "--diff"), "leave out --format");
   }
+  if (request.rows && (request.stage != kBytecode || request.run || request.stats || request.diff || request.region ||
+                       request.format > kText)) {
+    return refuse("--rows is about the listing of a program", "leave out all but --program and --after");
+  }
   if (request.stage == kSyntax && request.format > kText) {
     return refuse("the syntax is printed as text only", "the scene file itself is the JSON");
   }
@@ -110,6 +117,10 @@ std::optional<ExitCode> check_request(const DumpRequest& request, const Streams&
                   "use it with --stage graph or --stage bytecode");
   }
   return std::nullopt;
+}
+
+OptionResult read_rows(std::string_view text, NumberRange& rows) {
+  return read_range(text, "rows", std::numeric_limits<std::uint32_t>::max(), rows);
 }
 
 std::optional<int> parse(std::span<const std::string> args, const Streams& streams, DumpRequest& request) {
@@ -132,6 +143,9 @@ std::optional<int> parse(std::span<const std::string> args, const Streams& strea
                  request.diff);
   arguments.option("--region", "X,Y,Z", "Also print the part of the program that the region at this point runs",
                    into(read_point, request.region));
+  arguments.option("--rows", "A:B",
+                   "List rows A to B-1 of the instructions that repeat, and not only the first and last",
+                   into(read_rows, request.rows));
   arguments.flag("--run", "Print the stacks after each instruction, in f32, at the point of --at", request.run);
   arguments.option("--at", "X,Y,Z", "Point of --run", into(read_point, request.at));
   arguments.flag("--stats", "Print the cost of operations and nodes, in multiply-adds per point", request.stats);
@@ -169,7 +183,8 @@ std::string print_bytecode(const compiler::CompiledScene& scene, const DumpReque
                        cost_by_node(program));
   }
   if (request.format == kJson) return program_json(program, name, scene);
-  return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) + vm::disassemble(program);
+  return fmt::format("; {}: {}\n", name, scene.summary) + origin_line(scene) +
+         vm::disassemble(program, {.few = true, .range = request.rows});
 }
 
 std::optional<ExitCode> check_length(const compiler::CompiledScene& scene, const DumpRequest& request,

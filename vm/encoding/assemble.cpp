@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -53,16 +54,36 @@ struct Draft {
   std::vector<double> immediates;
 };
 
+// The instructions between `each` and `rows`, and the immediates that rows give, in the order of the text.
+struct Body {
+  struct Part {
+    Opcode opcode;
+    Draft draft;
+    DebugEntry place;
+  };
+  std::vector<Part> parts;
+  struct Slot {
+    const char* at;  // in the text
+    std::size_t part, immediate;
+  };
+  std::vector<Slot> slots;
+  std::size_t rows = 0, read = 0;  // number of rows, and of those that were read
+  bool complete = false;           // rows follow
+};
+
 class Assembler {
  public:
-  explicit Assembler(std::string_view text) : text_(text) {}
+  Assembler(std::string_view text, std::vector<std::size_t>* lines, std::size_t most)
+      : text_(text), lines_(lines), most_(most) {}
 
   std::variant<Program, AssembleError> run() {
     for (std::size_t at = 0; at < text_.size() && !error_;) {
       const std::size_t end = std::min(text_.find('\n', at), text_.size());
+      line_ = at;
       read_line(text_.substr(at, end - at));
       at = end + 1;
     }
+    if (body_ && !error_) fail(text_.substr(each_, 4), "`each` has no `end`");
     if (error_) return *std::move(error_);
     if (!placed_) program_.debug.clear();
     return std::move(program_);
@@ -70,9 +91,12 @@ class Assembler {
 
  private:
   void read_line(std::string_view line) {
+    if (body_ && body_->complete) return read_row(line);
     DebugEntry place{};
     split(line, place);
     if (error_ || tokens_.empty()) return;
+    if (tokens_[0] == "each") return begin_body();
+    if (tokens_[0] == "rows" && body_) return begin_rows();
     if (tokens_[0] == "locals" && program_.words.empty()) return read_locals();
     const OpcodeInfo* row = find_mnemonic(tokens_[0]);
     if (row == nullptr) {
@@ -83,7 +107,65 @@ class Assembler {
     Draft draft;
     read_operands(*row, draft);
     if (error_) return;
-    program_.append(row->opcode, draft.operand, draft.immediates, std::move(place));
+    if (body_) return body_->parts.push_back({row->opcode, std::move(draft), std::move(place)});
+    append(row->opcode, draft, std::move(place));
+  }
+
+  void append(Opcode opcode, const Draft& draft, DebugEntry place) {
+    program_.append(opcode, draft.operand, draft.immediates, std::move(place));
+    if (lines_) lines_->push_back(line_);
+  }
+  // Rows may ask for more than a machine runs, in a few characters.
+  void append_row() {
+    if (program_.debug.size() + body_->parts.size() > most_)
+      return fail(text_.substr(each_, 4), fmt::format("more than {} instructions", most_));
+    for (const Body::Part& part : body_->parts) append(part.opcode, part.draft, part.place);
+  }
+
+  // Reads "each 5952".
+  void begin_body() {
+    const auto rows = tokens_.size() == 2 ? to_number<std::uint32_t>(tokens_[1]) : std::nullopt;
+    if (body_ || !rows || *rows == 0)
+      return fail(tokens_[0], "`each` stands before a body of instructions, with how many rows it has");
+    body_.emplace().rows = *rows;
+    each_ = line_;
+  }
+  void begin_rows() {
+    if (body_->parts.empty()) return fail(tokens_[0], "`rows` stands after the instructions that they are of");
+    std::ranges::sort(body_->slots, {}, &Body::Slot::at);
+    body_->complete = true;
+  }
+
+  // Reads the numbers of a row, or `end`.
+  void read_row(std::string_view line) {
+    Body& body = *body_;
+    std::size_t given = 0;
+    for (std::size_t at = 0; !error_;) {
+      at = line.find_first_not_of(" \t\r", at);
+      if (at == line.npos || line[at] == ';') break;
+      const std::size_t end = std::min(line.find_first_of(" \t\r;", at), line.size());
+      const Token token = line.substr(at, end - at);
+      at = end;
+      if (token == "end" && given == 0) return end_body(token);
+      if (token == "...") return fail(token, "this listing leaves out rows: `fathom dump --stage file` lists all");
+      if (given == body.slots.size() || body.read == body.rows) return fail(token, "more numbers than `each` has");
+      const Body::Slot& slot = body.slots[given++];
+      body.parts[slot.part].draft.immediates[slot.immediate] = number(token);
+    }
+    if (error_ || (given == 0 && !body.slots.empty())) return;
+    if (given < body.slots.size())
+      return fail(line, fmt::format("a row has {} numbers, not {}", body.slots.size(), given));
+    if (body.slots.empty()) return;
+    ++body.read;
+    append_row();
+  }
+  void end_body(Token token) {
+    const Body& body = *body_;
+    // Rows without numbers are not written.
+    for (std::size_t row = 0; body.slots.empty() && row < body.rows && !error_; ++row) append_row();
+    if (!body.slots.empty() && body.read != body.rows)
+      return fail(token, fmt::format("`each` has {} rows, not {}", body.rows, body.read));
+    body_.reset();
   }
 
   // Splits `line` into tokens_, without the listing's columns and the comment. The source location goes to `place`.
@@ -167,7 +249,7 @@ class Assembler {
     for (std::size_t i = 0; i < given && !error_; ++i) {
       const Token token = tokens_[first + i];
       const bool integer = is_integer_immediate(row, static_cast<int>(i % own));
-      draft.immediates.push_back(integer ? whole(token) : number(token));
+      draft.immediates.push_back(integer ? whole(token) : immediate(token, draft));
     }
     if (row.form == Form::Outline) draft.operand = 0;  // append() counts the groups itself
   }
@@ -202,7 +284,8 @@ class Assembler {
     }
     if (last >= 5 && tokens_[last - 4] == "at") {
       draft.operand |= kFusedTranslate;
-      for (std::size_t i = last - 3; i < last && !error_; ++i) draft.immediates.push_back(number(tokens_[i]));
+      for (std::size_t i = last - 3; i < last && !error_; ++i)
+        draft.immediates.push_back(immediate(tokens_[i], draft));
       last -= 4;
     } else {
       for (std::size_t i = 1; i < last; ++i) {
@@ -233,7 +316,7 @@ class Assembler {
     if (token == "y") return Source::Y;
     if (token == "z") return Source::Z;
     if (token[0] != '%') {
-      draft.immediates.push_back(number(token));
+      draft.immediates.push_back(immediate(token, draft));
       return Source::Constant;
     }
     const double index = whole(token.substr(1));
@@ -244,6 +327,12 @@ class Assembler {
     return Source::Local;
   }
 
+  // Reads a float immediate. In a body `#` stands for a number of its rows.
+  double immediate(Token token, const Draft& draft) {
+    if (!body_ || token != "#") return number(token);
+    body_->slots.push_back({token.data(), body_->parts.size(), draft.immediates.size()});
+    return 0;
+  }
   double number(Token token) {
     const auto value = to_number<double>(token);
     if (!value || !std::isfinite(*value)) fail(token, fmt::format("`{}` is not a number that a double holds", token));
@@ -262,6 +351,10 @@ class Assembler {
   }
 
   std::string_view text_;
+  std::vector<std::size_t>* lines_;  // [instruction] where its line begins, or null
+  std::size_t most_;                 // instructions
+  std::size_t line_ = 0, each_ = 0;  // where the current line begins, and that of `each`
+  std::optional<Body> body_;
   Program program_;
   bool placed_ = false, named_ = false, counted_ = false;  // true once a source location, `source`, `locals` was read
   std::vector<Token> tokens_;                              // of the current line
@@ -270,6 +363,9 @@ class Assembler {
 
 }  // namespace
 
-std::variant<Program, AssembleError> assemble(std::string_view text) { return Assembler(text).run(); }
+std::variant<Program, AssembleError> assemble(std::string_view text, std::vector<std::size_t>* lines,
+                                              std::size_t most) {
+  return Assembler(text, lines, most).run();
+}
 
 }  // namespace fathom::vm

@@ -19,6 +19,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "vm/program/program.h"
 
@@ -31,7 +32,10 @@ struct AssembleError {
 };
 
 // Returns the unverified program of `text`; vm/program/verify.h checks it. A text without any source location (@)
-// gives no debug entries.
-[[nodiscard]] std::variant<Program, AssembleError> assemble(std::string_view text);
+// gives no debug entries. `lines`, if not null, is set to where the line of each instruction, or of its row, begins.
+// `most`: maximum number of instructions of a program with rows.
+[[nodiscard]] std::variant<Program, AssembleError> assemble(std::string_view text,
+                                                            std::vector<std::size_t>* lines = nullptr,
+                                                            std::size_t most = 1'000'000);
 
 }  // namespace fathom::vm

@@ -59,7 +59,7 @@ double trace_work(const vm::VerifiedProgram& program) {
 }
 
 std::string trace_listing(const vm::VerifiedProgram& program, glm::dvec3 point) {
-  const std::string listing = vm::disassemble(program);
+  const std::string listing = vm::disassemble(program, {.unrolled = true});
   std::string text = fmt::format("; at {} {} {}\n", point.x, point.y, point.z), first;
   std::size_t at = 0;
   const auto next_line = [&] {

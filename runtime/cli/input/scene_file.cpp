@@ -109,7 +109,7 @@ std::variant<SceneInput, ExitCode> read_scene(const SceneArguments& arguments, c
   if (const auto* code = std::get_if<ExitCode>(&read)) return *code;
   auto& source = std::get<compiler::Source>(read);
   if (!compiler::is_compiled_file(source.text())) return SceneInput{std::move(source), std::nullopt};
-  auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path));
+  auto stored = compiler::read_stored(bytes_of(source.text()), folder_name(arguments.path), arguments.limits);
   if (const auto* error = std::get_if<compiler::FileError>(&stored)) {
     return fail_whole(arguments.path, error->reason, error->remedy, arguments.error_format, streams);
   }

@@ -90,7 +90,8 @@ void Verbosity::describe(const compiler::CompiledScene& scene, const runtime::Se
   if (level_ >= 3) err << describe_settings(scene, settings);
   if (level_ >= 4) err << vm::printable(describe_tables(scene));
   if (level_ >= 5) err << operation_table(scene.distance);
-  if (level_ >= 6) err << vm::disassemble(scene.distance) << '\n' << vm::disassemble(scene.surface);
+  if (level_ >= 6)
+    err << vm::disassemble(scene.distance, {.few = true}) << '\n' << vm::disassemble(scene.surface, {.few = true});
 }
 
 }  // namespace fathom::cli

@@ -220,6 +220,19 @@ OptionResult read_whole(std::string_view text, std::int64_t lo, std::int64_t hi,
   return std::nullopt;
 }
 
+OptionResult read_range(std::string_view text, std::string_view what, std::int64_t most, NumberRange& range) {
+  const std::size_t middle = text.find(':');
+  std::int64_t first = 0, last = 0;
+  if (middle == std::string_view::npos || read_whole(text.substr(0, middle), 0, most, first) ||
+      read_whole(text.substr(middle + 1), 1, most, last) || first >= last) {
+    return OptionError{
+        fmt::format("`{}` is not a range of {}", text, what),
+        fmt::format("write it as 0:32: the {} from the first number up to the second, which is not in it", what)};
+  }
+  range = {static_cast<std::size_t>(first), static_cast<std::size_t>(last)};
+  return std::nullopt;
+}
+
 OptionResult read_seed(std::string_view text, std::uint64_t& seed) {
   const auto value = to<std::uint64_t>(text);
   if (!value) return option_error(fmt::format("`{}` is not a whole number from 0 to 2^64 - 1", text));

@@ -98,6 +98,9 @@ OptionResult read_positive(std::string_view text, double& number);
 // Reads a number in [least, most]. `help` may be empty.
 OptionResult read_between(std::string_view text, double least, double most, std::string_view help, double& number);
 OptionResult read_whole(std::string_view text, std::int64_t lo, std::int64_t hi, std::int64_t& number);
+// Reads "0:32": whole numbers of `what`, as "samples", from the first up to the second, which is not among them.
+using NumberRange = std::pair<std::size_t, std::size_t>;
+OptionResult read_range(std::string_view text, std::string_view what, std::int64_t most, NumberRange& range);
 OptionResult read_seed(std::string_view text, std::uint64_t& seed);
 
 // Makes a Setter for a whole number in [lo, hi].

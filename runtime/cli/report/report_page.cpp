@@ -77,7 +77,7 @@ std::vector<Section> sections_of(const ReportContents& contents) {
       {"cost", "Cost", "<div class=\"pictures\">\n" + cost_figures(film) + "</div>\n"},
       {"profile", "Profile", pre(to_table(contents.render.stats))},
       {"operations", "Operations", pre(operation_table(scene.surface) + "\n" + cost_by_node(scene.surface))},
-      {"program", "Program", pre(vm::disassemble(scene.surface))}};
+      {"program", "Program", pre(vm::disassemble(scene.surface, {.few = true}))}};
   if (contents.chart) {
     sections.push_back({"chart", "Chart",
                         fmt::format("<img alt=\"speed against accuracy\" src=\"{}\">\n",

@@ -107,16 +107,9 @@ void add_denoise_options(Arguments& arguments, RenderRequest& request) {
 }
 
 OptionResult read_sample_range(std::string_view text, runtime::SampleRange& range) {
-  const std::size_t middle = text.find(':');
-  const auto wrong = [&] {
-    return OptionError{fmt::format("`{}` is not a range of samples", text),
-                       "write it as 0:32: the samples from the first number up to the second, which is not in it"};
-  };
-  if (middle == std::string_view::npos) return wrong();
-  std::int64_t first = 0, last = 0;
-  if (read_whole(text.substr(0, middle), 0, compiler::kMaxSpp, first)) return wrong();
-  if (read_whole(text.substr(middle + 1), 1, compiler::kMaxSpp, last) || first >= last) return wrong();
-  range = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+  NumberRange numbers{};
+  if (OptionResult error = read_range(text, "samples", compiler::kMaxSpp, numbers)) return error;
+  range = {static_cast<std::uint32_t>(numbers.first), static_cast<std::uint32_t>(numbers.second)};
   return std::nullopt;
 }
 

@@ -219,13 +219,13 @@ TEST_CASE("each section says what is wrong with it", "[artefact]") {
   Bytes other = good;
   other[8] = 3;
   CHECK_THAT(reason_of(other),
-             Contains("it is of version 3 of the format with 4 sections; this program reads version 5"));
+             Contains("it is of version 3 of the format with 4 sections; this program reads version 6"));
   CHECK_THAT(reason_of({good.begin(), good.begin() + 10}), Contains("header is damaged or cut off"));
   CHECK_THAT(reason_of(sealed(parts, vm::Digest{1, 2})), Contains("another machine"));
   CHECK_THAT(with([](Sections& s) { s.code.push_back(0); }), Contains("goes on for 1 bytes after its last program"));
   CHECK_THAT(with([](Sections& s) { s.code.resize(4); }), Contains("`code` is cut off"));
   CHECK_THAT(with([](Sections& s) { s.code[0] = 200; }), Contains("`code` is cut off"));
-  CHECK_THAT(with([](Sections& s) { s.code[24] = 0xff; }),
+  CHECK_THAT(with([](Sections& s) { s.code[32] = 0xff; }),
              Contains("program `distance` at byte 8 of the code, word 0: no opcode 255"));
   CHECK_THAT(with([](Sections& s) { s.tables.push_back(0); }), Contains("`tables` is wrong: byte"));
   CHECK_THAT(with([](Sections& s) { s.tables.pop_back(); }), Contains("`tables` is wrong: byte"));
@@ -288,7 +288,7 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
     CHECK_FALSE(compiler::read_listing(source, diagnostics, contents));
     return diagnostics.print(source, compiler::ErrorFormat::Short);
   };
-  CHECK_THAT(refused("fathom 5", "fathom 6"), Contains("test.txt:1:8: error: `5` should be here"));
+  CHECK_THAT(refused("fathom 6", "fathom 7"), Contains("test.txt:1:8: error: `6` should be here"));
   CHECK_THAT(refused("\"fov\"", "\"fvo\""),
              Contains("test.txt:3:1: error: the tables: /camera: `fov` should be here"));
   CHECK_THAT(refused("\"blades\": 6", "\"blades\": 99"), Contains("/camera/blades: 99 is not in 0..32"));

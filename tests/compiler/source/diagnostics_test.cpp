@@ -43,7 +43,7 @@ Definitions definitions_in(const std::string& scene) {
 // Diagnoses a scene, or a listing, which begins with its header or with a comment of its own kind.
 Diagnostics diagnose(Source& source) {
   Diagnostics diagnostics;
-  if (source.text().starts_with("fathom 5") || source.text().starts_with(";")) {
+  if (source.text().starts_with("fathom 6") || source.text().starts_with(";")) {
     FileContents contents;
     read_listing(source, diagnostics, contents);
     return diagnostics;
@@ -61,7 +61,7 @@ Diagnostics diagnose(Source& source) {
 
 TEST_CASE("golden diagnostics", "[source][diagnostics]") {
   check_golden("diagnostics", [](const std::string& input) {
-    Source source(is_text_scene(input) && !input.starts_with("fathom 5") ? "scene.fathom" : "scene.json", input);
+    Source source(is_text_scene(input) && !input.starts_with("fathom 6") ? "scene.fathom" : "scene.json", input);
     const Diagnostics diagnostics = diagnose(source);
     return diagnostics.print(source, ErrorFormat::Text);
   });

@@ -2,8 +2,11 @@
 // at its position.
 #include "vm/encoding/assemble.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "tests/support/catch.h"
 #include "tests/support/random/random_program.h"
@@ -106,6 +109,52 @@ TEST_CASE("what is no program is refused where it goes wrong", "[encoding][assem
   refused("sphere 1 @6\n", "@6", "@line:column");
   refused("sphere 1 @0:5 ball\n", "@0:5", "@line:column");
   refused("sphere 1 @6:5 b\\x\n", "b\\x", "backslash");
+}
+
+TEST_CASE("a body that repeats is listed once, with its numbers as rows", "[encoding][assemble]") {
+  vm::Program program;
+  const auto add = [&](vm::Opcode opcode, std::uint32_t operand, const std::vector<double>& numbers) {
+    program.append(opcode, operand, numbers, {static_cast<std::uint32_t>(program.words.size()), 3, 7, "ball"});
+  };
+  add(vm::Opcode::Sphere, 0, {7});
+  for (int i = 0; i < 40; ++i) {
+    add(vm::Opcode::Translate, 0, {0.1 * i, 5, -0.1 * i});
+    add(vm::Opcode::Sphere, vm::kFusedTranslate | vm::kFusedMin, {1.0 / (1 + i), 2, 3, 0.25 * i});
+    add(vm::Opcode::Drop, 0, {});
+  }
+  const auto verified = std::get<vm::VerifiedProgram>(vm::verify(program));
+  const std::string listing = vm::disassemble(verified);
+  CHECK(std::ranges::count(listing, '\n') < 52);
+  CHECK_THAT(listing, Catch::Contains("each 40\n") && Catch::Contains("translate # 5 #") &&
+                          Catch::Contains("sphere # at # 2 3 min") && Catch::Contains("rows\n  0 0 0 1\n  0.1 -0.1"));
+  CHECK(same_program(assembled(listing), program));
+  CHECK(same_program(assembled(vm::disassemble(verified, {.unrolled = true})), program));
+  std::vector<std::size_t> lines;
+  REQUIRE(std::holds_alternative<vm::Program>(vm::assemble(listing, &lines)));
+  REQUIRE(lines.size() == 121);
+  CHECK(listing.substr(lines[4], 12) == "  0.1 -0.1 0");
+  CHECK(lines[4] == lines[6]);
+  const std::string few = vm::disassemble(verified, {.few = true}),
+                    middle = vm::disassemble(verified, {.range = std::pair<std::size_t, std::size_t>(2, 4)});
+  CHECK(std::ranges::count(few, '\n') < 20);
+  CHECK_THAT(middle, Catch::Contains("rows\n  ...\n  0.2 -0.2") && Catch::Contains("  ...\nend\n"));
+  refused(few, "...", "leaves out rows");
+}
+
+TEST_CASE("rows without a body, or too few, are refused", "[encoding][assemble]") {
+  CHECK(assembled("each 3\nsphere 1\nrows\nend\nmin\nmin\n").words.size() == 8);
+  CHECK(assembled("each 2\nsphere #\nrows ; radius\n\n 1 ; the first\n2\nend\nmin\n").words.size() == 5);
+  refused("each 2\nsphere #\nrows\n 1\nend\nmin\n", "end", "`each` has 2 rows, not 1");
+  refused("each 2\nsphere #\nrows\n1\n2\n3\nend\nmin\n", "3", "more numbers than `each` has");
+  refused("each 2\nsphere # at # # #\nrows\n1 2\n", "1 2", "a row has 4 numbers, not 2");
+  refused("each 2\nsphere #\nrows\nx\n", "x", "not a number");
+  refused("each 2\nsphere #\n", "each", "`each` has no `end`");
+  refused("each 2\nrows\n", "rows", "after the instructions");
+  refused("each\nsphere #\n", "each", "with how many rows");
+  refused("each 2\neach 2\n", "each", "with how many rows");
+  refused("each 4000000000\nsphere 1\nrows\nend\n", "each", "more than 1000000 instructions");
+  refused("sphere #\n", "#", "not a number");
+  refused("rows\n", "rows", "no instruction");
 }
 
 TEST_CASE("escaped texts lie on one line and read back", "[encoding][assemble]") {

@@ -39,7 +39,7 @@ TEST_CASE("random programs read back from their bytes", "[encoding][binary]") {
     const vm::VerifiedProgram program = program_of(random, seed);
     vm::ByteWriter out;
     vm::write_program(out, program);
-    vm::write_debug(out, program, program.program().source_name);
+    vm::write_debug(out, {program.program().source_name, program.program().debug});
     vm::ByteReader in(out.bytes());
     auto read = vm::read_program(in);
     INFO("seed " << seed);
@@ -83,8 +83,9 @@ TEST_CASE("what the bytes declare must be what the code is", "[encoding][binary]
   program.append(vm::Opcode::Sphere, 0, {0.1}, {});
   const auto verified = vm::verify(program);
   const std::vector<std::uint8_t> bytes = bytes_of(std::get<vm::VerifiedProgram>(verified));
-  // Layout: locals, values, points, words, 2 words, unrounded constants, {word, f64}.
-  REQUIRE(bytes.size() == 16 + 8 + 4 + 12);
+  // Layout: locals, values, points, words; a block of 1 instruction and 1 row: the opcode word, and a column of an
+  // f64.
+  REQUIRE(bytes.size() == 16 + 8 + 4 + 9);
   const auto changed = [&](std::size_t at, std::uint8_t value) {
     std::vector<std::uint8_t> copy = bytes;
     copy[at] = value;
@@ -93,8 +94,47 @@ TEST_CASE("what the bytes declare must be what the code is", "[encoding][binary]
   CHECK(reason_of(bytes).empty());
   CHECK(changed(4, 2) == "declares stacks of 2 values and 1 points; the code reaches 1 and 1");
   CHECK(changed(8, 3) == "declares stacks of 1 values and 3 points; the code reaches 1 and 1");
-  CHECK(changed(28, 2) == "the unrounded constants are not in order, or beyond the code");
-  CHECK_THAT(changed(39, 0xff), Catch::Contains("not finite") || Catch::Contains("in the code"));
+  CHECK(changed(16, 2) == "the program is cut off");
+  CHECK(changed(20, 2) == "a block of instructions that makes no sense");
+  CHECK(changed(20, 0) == "a block of instructions that makes no sense");  // a copy of an earlier program's
+  CHECK(changed(28, 5) == "the program is cut off");
+  std::vector<std::uint8_t> wide = bytes;  // 0.5 as f64 could be an f32
+  wide[29 + 6] = 0xe0, wide[29 + 7] = 0x3f;
+  std::fill_n(wide.begin() + 29, 6, std::uint8_t{0});
+  CHECK(reason_of(wide) == "the program is not in the shortest form");
+  CHECK_THAT(changed(36, 0xff), Catch::Contains("not finite") || Catch::Contains("in the code"));
+}
+
+// A union of a thousand balls is a body and three columns, and what an earlier program has, too, is its place there.
+TEST_CASE("what repeats in programs is written once", "[encoding][binary]") {
+  vm::Program program;
+  for (int i = 0; i < 1000; ++i)
+    program.append(vm::Opcode::Sphere, vm::kFusedTranslate | (i > 0 ? vm::kFusedMin : 0), {0.1 * i, 0.2 * i, 1, 0.5},
+                   {0, 3, 7, "sphere"});
+  for (std::size_t i = 0; i < program.debug.size(); ++i) program.debug[i].offset = static_cast<std::uint32_t>(5 * i);
+  const auto balls = std::get<vm::VerifiedProgram>(vm::verify(program));
+  program.append(vm::Opcode::Negate, 0, {}, {5000, 3, 7, "negate"});
+  const auto inside_out = std::get<vm::VerifiedProgram>(vm::verify(program));
+  vm::ByteWriter out;
+  vm::ProgramEncoder encoder;
+  encoder.write(out, balls);
+  const std::size_t first = out.size();
+  CHECK(first < 2 * 8 * 1000 + 200);
+  encoder.write(out, inside_out);
+  CHECK(out.size() - first < 100);
+  vm::ByteReader in(out.bytes());
+  vm::ProgramDecoder decoder;
+  for (const vm::VerifiedProgram* each : {&balls, &inside_out}) {
+    const auto back = decoder.read(in);
+    REQUIRE(std::holds_alternative<vm::VerifiedProgram>(back));
+    CHECK(std::get<vm::VerifiedProgram>(back).program().words == each->program().words);
+    CHECK(std::get<vm::VerifiedProgram>(back).program().doubles == each->program().doubles);
+  }
+  vm::ByteWriter places;
+  vm::write_debug(places, {"scene", program.debug});
+  CHECK(places.size() < 100);
+  vm::ByteReader read(places.bytes());
+  CHECK(vm::read_debug(read, inside_out).entries.size() == 1001);
 }
 
 // Compiled files record the version of the machine that their programs are for. If this test fails, some opcode
