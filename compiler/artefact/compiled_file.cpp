@@ -306,16 +306,32 @@ std::variant<StoredText, FileError> read_stored_text(std::span<const std::uint8_
                    true};
 }
 
-vm::Digest scene_digest(const CompiledScene& scene) {
-  Bytes all = write_code(scene);
+vm::Digest scene_digest(const CompiledScene& scene, bool settings) {
   TableJson tables = tables_of(scene);
   // A still does not depend on these: the moments of an animation are scenes with digests of their own.
   for (const char* name : {"frames", "fps"}) tables["film"].erase(name);
   tables["camera"].erase("shutter");
   tables.erase("summary");
-  const Bytes written = TableJson::to_cbor(tables);
-  all.insert(all.end(), written.begin(), written.end());
-  return vm::digest(all);
+  for (const char* name : {"film", "render"}) {
+    if (!settings) tables.erase(name);
+  }
+  vm::ByteWriter all;
+  write(all, program_digest(scene));
+  all.raw(TableJson::to_cbor(tables));
+  return vm::digest(all.bytes());
+}
+
+vm::Digest program_digest(const CompiledScene& scene) {
+  const auto bytes_of = [](const auto& numbers) {
+    return std::string_view(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(numbers[0]));
+  };
+  vm::ByteWriter all;
+  for (const NamedProgram& row : programs_of(scene)) {
+    write(all, vm::digest(bytes_of(row.program->program().words)));
+    write(all, vm::digest(bytes_of(row.program->program().doubles)));
+  }
+  for (int axis = 0; axis < 3; ++axis) all.f64(scene.origin[axis]);
+  return vm::digest(all.bytes());
 }
 
 }  // namespace fathom::compiler

@@ -71,7 +71,9 @@ std::vector<Import> files_of(const Source& source);
 [[nodiscard]] bool add_import(Source& source, const std::string& path, std::string text);
 
 // Returns a digest of everything that decides the image: programs and tables, not names of instructions, not the
-// text.
-vm::Digest scene_digest(const CompiledScene& scene);
+// text. `settings`: with `film` and `render`, which the command line may override.
+vm::Digest scene_digest(const CompiledScene& scene, bool settings = true);
+// Returns a digest of the programs and their place.
+vm::Digest program_digest(const CompiledScene& scene);
 
 }  // namespace fathom::compiler

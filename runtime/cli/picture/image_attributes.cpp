@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "compiler/artefact/compiled_file.h"
 #include "runtime/cli/options/version.h"
-#include "runtime/cli/picture/scene_hash.h"
 #include "runtime/sampling/camera.h"
 
 namespace fathom::cli {
@@ -46,8 +46,8 @@ runtime::Attributes image_attributes(const compiler::CompiledScene& scene, const
   runtime::Attributes attributes = {
       {"worldToCamera", matrix_of({x, y, z, one})},
       {"fathom.version", std::string(kVersion)},
-      {"fathom.sceneHash", scene_hash(scene)},
-      {"fathom.programHash", program_hash(scene)},
+      {"fathom.sceneHash", compiler::scene_digest(scene, false).text()},
+      {"fathom.programHash", compiler::program_digest(scene).text()},
       {"fathom.seed", std::to_string(settings.seed)},
       {"fathom.exposure", static_cast<float>(scene.film.exposure)},
       {"fathom.tone", std::string(compiler::kToneCurves[static_cast<std::size_t>(scene.film.tone)])},

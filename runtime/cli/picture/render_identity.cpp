@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "compiler/artefact/compiled_file.h"
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/picture/image_attributes.h"
-#include "runtime/cli/picture/scene_hash.h"
 #include "vm/encoding/bytes.h"
 #include "vm/encoding/digest.h"
 
@@ -72,8 +72,8 @@ std::string marching_of(const runtime::Marching& marching) {
 std::string moments_of(const std::vector<runtime::Moment>& moments) {
   vm::ByteWriter bytes;
   for (const runtime::Moment& moment : moments) {
-    for (const std::string& text :
-         {scene_hash(*moment.scene), place_of(*moment.scene), view_of(moment.scene->camera)})
+    for (const std::string& text : {compiler::scene_digest(*moment.scene, false).text(), place_of(*moment.scene),
+                                    view_of(moment.scene->camera)})
       bytes.text(text);
     bytes.u32(moment.samples.last);
   }
@@ -104,8 +104,8 @@ runtime::Identity render_identity(const compiler::CompiledScene& scene, const ru
   runtime::Identity identity = {
       {"fathom", std::string(kVersion)},
       {"renderer", std::to_string(kRendererBits)},
-      {"scene", scene_hash(scene)},
-      {"program", program_hash(scene)},
+      {"scene", compiler::scene_digest(scene, false).text()},
+      {"program", compiler::program_digest(scene).text()},
       {"size", fmt::format("{}x{}", settings.width, settings.height)},
       {"camera", place_of(scene)},
       {"field of view", view_of(scene.camera)},
