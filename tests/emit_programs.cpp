@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <regex>
+#include <string>
 #include <string_view>
 
 #include "compiler/emit/emit.h"
@@ -27,13 +29,19 @@ std::string cpp_header() {
   return text + "inline constexpr emitted::Program kEmittedCpp[] = {\n" + table + "};\n";
 }
 
+// Returns the text with its array of rows as C++ has it.
+std::string with_cpp_arrays(const std::string& text) {
+  static const std::regex array(R"(= float\[\d+\]\(([^)]*)\);)");
+  return std::regex_replace(text, array, "= {$1};");
+}
+
 std::string glsl_header() {
   std::string text =
       "namespace emitted_glsl {\nusing namespace glm;\n"
       "struct Program {\n  const char* name;\n  float (*distance)(vec3);\n  int (*surface)(vec3);\n};\n";
   std::string table;
   for (const EmittedProgram& program : emitted_programs()) {
-    text += compiler::emit_glsl(program.scene, program.name, true);
+    text += with_cpp_arrays(compiler::emit_glsl(program.scene, program.name, true));
     table += fmt::format("    {{\"{0}\", emitted_glsl::{0}_distance, emitted_glsl::{0}_surface}},\n", program.name);
   }
   return text + "}\ninline constexpr emitted_glsl::Program kEmittedGlsl[] = {\n" + table + "};\n";

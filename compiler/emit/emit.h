@@ -3,7 +3,8 @@
 // (vm/record/record.h).
 //
 // The function maps a point of the scene to a distance, both in scene units. The length of the text depends on the
-// program alone. Materials are not part of the text.
+// program alone. A body of instructions that repeats is a loop over an array of numbers. Materials are not part of the
+// text.
 // Tested by: tests/compiler/emit/emit_test.cpp, tests/compiler/emit/emitted_cpp_test.cpp,
 // tests/compiler/emit/emitted_glsl_test.cpp
 #pragma once

@@ -23,11 +23,19 @@ std::string guard_of(const std::string& name_space) {
 
 std::string emit_cpp(const CompiledScene& scene, const std::string& name_space) {
   FunctionLibrary functions(kCpp);
-  const std::string body = print_program(kCpp, scene.distance, scene.origin, functions, Result::Distance);
+  std::vector<double> rows;
+  const std::string body = print_program(kCpp, scene.distance, scene.origin, functions, Result::Distance, &rows);
   std::string text = fmt::format(fmt::runtime(kCppHead), describe(scene), name_space, guard_of(name_space));
   text += fmt::format("namespace {} {{\n\n{}", name_space, kCppPrimitives);
   for (const char* type : {"float", "double"}) text += '\n' + fmt::format(fmt::runtime(kCppScalar), type);
-  text += fmt::format("{}{}\nstatic FATHOM_SCENE_INLINE T distance([[maybe_unused]] vec3 p) {{\n{}}}\n}};\n", kCppOpen,
+  text += kCppOpen;
+  if (!rows.empty()) {
+    text += fmt::format(
+        "static constexpr double rows[] = {{\n{}}};\nstatic FATHOM_SCENE_INLINE double row(int n) {{ return "
+        "rows[n]; }}\n\n",
+        list_rows(kCpp, rows));
+  }
+  text += fmt::format("{}\nstatic FATHOM_SCENE_INLINE T distance([[maybe_unused]] vec3 p) {{\n{}}}\n}};\n",
                       functions.text(), body);
   text +=
       "\ntemplate <class T>\nFATHOM_SCENE_INLINE T distance(T x, T y, T z) {\n  return Scene<T>::distance({x, y, "

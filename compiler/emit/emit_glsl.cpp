@@ -23,15 +23,23 @@ std::string distance_head(const std::string& prefix) { return fmt::format("float
 std::string surface_head(const std::string& prefix) { return fmt::format("int {}surface(vec3 p)", prefix); }
 
 // Returns the functions NAME_distance and, with `surfaces`, NAME_surface, after those that they call.
-std::string print_functions(const Language& language, const CompiledScene& scene, bool surfaces) {
+// `loops`: with loops over arrays of numbers.
+std::string print_functions(const Language& language, const CompiledScene& scene, bool surfaces, bool loops) {
   FunctionLibrary functions(language);
-  std::string bodies;
+  std::string bodies, data;
+  std::vector<double> rows;
   const auto print = [&](std::string_view head, const vm::VerifiedProgram& program, Result result) {
-    bodies += fmt::format("\n{} {{\n{}}}\n", head, print_program(language, program, scene.origin, functions, result));
+    bodies += fmt::format("\n{} {{\n{}}}\n", head,
+                          print_program(language, program, scene.origin, functions, result, loops ? &rows : nullptr));
   };
   print(distance_head(language.prefix), scene.distance, Result::Distance);
   if (surfaces) print(surface_head(language.prefix), scene.surface, Result::Surface);
-  return functions.text() + bodies;
+  if (!rows.empty()) {
+    data = fmt::format(
+        "const float {0}rows[{1}] = float[{1}](\n{2});\nfloat {0}row(int n) {{\n  return {0}rows[n];\n}}\n",
+        language.prefix, rows.size(), list_rows(language, rows));
+  }
+  return data + functions.text() + bodies;
 }
 
 // True for numbers that are likelier to mean no translation, no rotation or no limit than to be chosen.
@@ -46,7 +54,7 @@ std::string emit_glsl(const CompiledScene& scene, const std::string& name, bool 
   const std::string listed =
       surfaces ? "//\n// The number of the surface to which the distance belongs:\n//\n" + list_surfaces(scene) : "";
   return fmt::format(fmt::runtime(kGlslHead), describe(scene), name, declared, listed) +
-         print_functions(language, scene, surfaces);
+         print_functions(language, scene, surfaces, true);
 }
 
 GlslTemplate emit_glsl_template(const CompiledScene& scene, const std::string& name) {
@@ -60,10 +68,10 @@ GlslTemplate emit_glsl_template(const CompiledScene& scene, const std::string& n
     result.numbers.push_back(static_cast<float>(value));
     return fmt::format("{}_numbers[{}].{}", name, i / 4, "xyzw"[i % 4]);
   };
-  result.text = print_functions(language, scene, true);
+  result.text = print_functions(language, scene, true, false);
   if (result.numbers.size() > kMaxGlslNumbers) {
     language.immediate = language.literal;
-    result = {print_functions(language, scene, true), {}};
+    result = {print_functions(language, scene, true, false), {}};
   }
   result.numbers.resize((std::max<std::size_t>(1, result.numbers.size()) + 3) / 4 * 4);
   return result;

@@ -63,7 +63,9 @@ Expression FunctionLibrary::apply(vm::Opcode opcode, const std::vector<Expressio
   std::vector<std::string> floats;
   for (int i = 0; row.form != Form::Outline && i < row.immediates; ++i) {
     if (vm::is_integer_immediate(row, i)) continue;
-    floats.push_back(language_.immediate(immediates.doubles[static_cast<std::size_t>(i)]));
+    const auto at = static_cast<std::size_t>(i);
+    const bool has_text = at < immediates.texts.size() && !immediates.texts[at].empty();
+    floats.push_back(has_text ? immediates.texts[at] : language_.immediate(immediates.doubles[at]));
   }
   if (const auto expression =
           as_expression(language_, function.recorded, parameter_texts(language_, row, operands, floats))) {

@@ -15,6 +15,7 @@ namespace fathom::compiler {
 struct Immediates {
   std::span<const std::uint32_t> words;
   std::span<const double> doubles;
+  std::span<const std::string> texts = {};  // that stand for numbers, where they are not empty
 };
 
 class FunctionLibrary {

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <utility>
 #include <vector>
+
+#include "vm/encoding/repeats.h"
 
 namespace fathom::compiler {
 namespace {
@@ -38,8 +43,15 @@ std::string chosen(const std::string& x, const std::string& y, const std::string
 // Runs the program on names: both stacks and the locals hold the texts of the values that the machine's would hold.
 class ProgramPrinter {
  public:
-  ProgramPrinter(const Language& language, const vm::Program& program, FunctionLibrary& functions, Result result)
-      : language_(language), program_(program), functions_(functions), result_(result), locals_(program.locals) {}
+  ProgramPrinter(const Language& language, const vm::Program& program, FunctionLibrary& functions, Result result,
+                 std::vector<double>* rows)
+      : language_(language),
+        program_(program),
+        functions_(functions),
+        result_(result),
+        rows_(rows),
+        offsets_(vm::offsets_of(program)),
+        locals_(program.locals) {}
 
   std::string print(const glm::dvec3& origin) {
     points_.push_back({"p"});
@@ -48,10 +60,12 @@ class ProgramPrinter {
       points_ = {line("vec3", "q", functions_.apply(Opcode::Translate, points_, {{}, by}),
                       language_.has_comments ? "the scene's origin" : "")};
     }
-    for (std::size_t i = 0; at_ < program_.words.size(); ++i) {
-      const bool known = language_.has_comments && i < program_.debug.size();
-      comment_ = known && program_.debug[i].symbol.ends_with('"') ? program_.debug[i].symbol : "";
-      instruction();
+    for (const vm::Repeat& block : blocks()) {
+      if (block.rows > 1 && is_loop(block)) {
+        loop(block);
+      } else {
+        for (const std::size_t end = next_ + block.length * block.rows; next_ < end;) instruction();
+      }
     }
     if (result_ == Result::Surface) tag(values_.back(), "0");
     out_ += fmt::format("  return {};\n",
@@ -60,15 +74,107 @@ class ProgramPrinter {
   }
 
  private:
+  static constexpr std::size_t kLeastRows = 16;  // of a loop
+
+  std::vector<vm::Repeat> blocks() const {
+    if (!rows_) return {{offsets_.size(), 1}};
+    return vm::find_repeats(vm::code_keys(program_, offsets_), kLeastRows);
+  }
+
+  // True if the body of the next block changes nothing but the top value. The points of an outline are no numbers of
+  // its function, and a local would be needed after the loop.
+  bool is_loop(const vm::Repeat& block) const {
+    int values = 0, points = 0;
+    for (std::size_t i = next_; i < next_ + block.length; ++i) {
+      const std::uint32_t word = program_.words[offsets_[i]];
+      const OpcodeInfo& row = vm::info(static_cast<Opcode>(word & 0xff));
+      const vm::StackEffect effect = vm::effect_of(word);
+      if (row.form == Form::Outline || row.opcode == Opcode::Tee) return false;
+      if (values - effect.values_needed < -1 || points - effect.points_needed < -1) return false;
+      values += effect.values_change, points += effect.points_change;
+      if (points < 0) return false;
+    }
+    return values == 0 && points == 0;
+  }
+
+  bool has_tag(const vm::Repeat& block) const {
+    const auto body = std::span(offsets_).subspan(next_, block.length);
+    return std::ranges::any_of(
+        body, [this](std::size_t at) { return static_cast<Opcode>(program_.words[at] & 0xff) == Opcode::Tag; });
+  }
+
+  void loop(const vm::Repeat& block) {
+    const std::size_t after = next_ + block.length * block.rows;
+    const Value start = pop();
+    const std::string number = fmt::format("d{}", ++value_names_);
+    out_ += fmt::format("  {} {} = {};\n", language_.number_type, number, start.number.text);
+    std::string surface = "-1";
+    if (result_ == Result::Surface && (start.surface != "-1" || has_tag(block))) {
+      surface = fmt::format("s{}", ++surface_names_);
+      out_ += fmt::format("  int {} = {};\n", surface, start.surface);
+    }
+    out_ += fmt::format("  for (int i = 0; i < {}; ++i) {{\n", block.rows);
+    add_rows(block);
+    values_.push_back({{number}, surface, start.tagged});
+    const std::string before = std::exchange(out_, "");
+    for (std::size_t i = 0; i < block.length; ++i) instruction();
+    row_texts_.clear();
+    const Value end = pop();
+    out_ += fmt::format("  {} = {};\n", number, end.number.text);
+    if (end.surface != surface) out_ += fmt::format("  {} = {};\n", surface, end.surface);
+    const std::string body = std::exchange(out_, before);
+    for (std::size_t at = 0; at < body.size();) {
+      const std::size_t line_end = body.find('\n', at) + 1;
+      out_ += "  " + body.substr(at, line_end - at);
+      at = line_end;
+    }
+    out_ += "  }\n";
+    next_ = after;
+    values_.push_back({{number}, surface, start.tagged && end.tagged});
+  }
+
+  static std::uint64_t bits_of(double number) { return std::bit_cast<std::uint64_t>(number); }
+
+  // Adds the numbers of the next block that differ between its rows, and sets the texts that stand for them.
+  void add_rows(const vm::Repeat& block) {
+    const std::size_t begin = offsets_[next_], stride = offsets_[next_ + block.length] - begin;
+    std::vector<std::size_t> varying;
+    for (std::size_t word = begin; word < begin + stride; ++word) {
+      bool differs = false;
+      for (std::size_t row = 1; row < block.rows; ++row)
+        differs = differs || bits_of(program_.doubles[word + row * stride]) != bits_of(program_.doubles[word]);
+      if (differs) varying.push_back(word);
+    }
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < block.rows; ++row) {
+      for (const std::size_t word : varying) numbers.push_back(program_.doubles[word + row * stride]);
+    }
+    // A function of surfaces has the rows of the function of distances.
+    const auto known = std::search(rows_->begin(), rows_->end(), numbers.begin(), numbers.end());
+    const auto first = static_cast<std::size_t>(known - rows_->begin());
+    if (known == rows_->end()) rows_->insert(rows_->end(), numbers.begin(), numbers.end());
+    row_texts_.assign(stride, "");
+    row_begin_ = begin;
+    for (std::size_t k = 0; k < varying.size(); ++k)
+      row_texts_[varying[k] - begin] = fmt::format("{}row({} * i + {})", language_.prefix, varying.size(), first + k);
+  }
+
+  // Returns the texts that stand for the immediates from `word` on, none outside of loops.
+  std::span<const std::string> texts_from(std::size_t word) const {
+    return row_texts_.empty() ? std::span<const std::string>() : std::span(row_texts_).subspan(word - row_begin_);
+  }
+
   void instruction() {
-    const std::uint32_t word = program_.words[at_];
+    const bool known = language_.has_comments && next_ < program_.debug.size();
+    comment_ = known && program_.debug[next_].symbol.ends_with('"') ? program_.debug[next_].symbol : "";
+    const std::size_t at = offsets_[next_++];
+    const std::uint32_t word = program_.words[at];
     const OpcodeInfo& row = vm::info(static_cast<Opcode>(word & 0xff));
-    leading_ = at_ + 1;
-    const std::size_t end = at_ + vm::instruction_length(word);
-    at_ = end;
+    leading_ = at + 1;
+    const std::size_t end = at + vm::instruction_length(word);
     const std::size_t first = leading_ + static_cast<std::size_t>(vm::leading_immediates(word));
     const Immediates immediates{std::span(program_.words).subspan(first, end - first),
-                                std::span(program_.doubles).subspan(first, end - first)};
+                                std::span(program_.doubles).subspan(first, end - first), texts_from(first)};
     switch (row.form) {
       case Form::Point:
         points_.push_back(name_point(functions_.apply(row.opcode, {points_.back()}, immediates)));
@@ -96,7 +202,8 @@ class ProgramPrinter {
     const std::uint32_t modes = vm::operand_of(word);
     Expression p = points_.back();
     if (modes & vm::kFusedTranslate) {
-      p = functions_.apply(Opcode::Translate, {p}, {{}, std::span(program_.doubles).subspan(leading_, 3)});
+      p = functions_.apply(Opcode::Translate, {p},
+                           {{}, std::span(program_.doubles).subspan(leading_, 3), texts_from(leading_)});
     }
     Value value{functions_.apply(row.opcode, {p}, immediates)};
     if (modes & vm::kFusedMin) {
@@ -148,12 +255,17 @@ class ProgramPrinter {
       case vm::Source::Stack:
         return pop();
       case vm::Source::Constant:
-        return {language_.number(language_.immediate(program_.doubles[leading_++]))};
+        return {language_.number(constant(leading_++))};
       case vm::Source::Local:
         return locals_[local];
       default:
         return {{points_.back().text + '.' + " xyz"[static_cast<std::size_t>(source)]}};
     }
+  }
+
+  std::string constant(std::size_t word) const {
+    const std::span<const std::string> texts = texts_from(word);
+    return texts.empty() || texts[0].empty() ? language_.immediate(program_.doubles[word]) : texts[0];
   }
 
   void machine(const OpcodeInfo& row, std::uint32_t word) {
@@ -217,9 +329,13 @@ class ProgramPrinter {
   const vm::Program& program_;
   FunctionLibrary& functions_;
   const Result result_;
+  std::vector<double>* const rows_;         // of all loops, or null
+  const std::vector<std::size_t> offsets_;  // [instruction]
   std::vector<Expression> points_;
   std::vector<Value> values_, locals_;
-  std::size_t at_ = 0, leading_ = 0;
+  std::size_t next_ = 0, leading_ = 0;  // the next instruction; word of the next leading immediate
+  std::vector<std::string> row_texts_;  // [word of the body] within a loop
+  std::size_t row_begin_ = 0;           // word
   std::string out_;
   std::string comment_;  // the instruction's symbol, if the scene gives it a name
   int value_names_ = 0, point_names_ = 0, surface_names_ = 0;
@@ -228,12 +344,23 @@ class ProgramPrinter {
 }  // namespace
 
 std::string print_program(const Language& language, const vm::VerifiedProgram& program, const glm::dvec3& origin,
-                          FunctionLibrary& functions, Result result) {
-  return ProgramPrinter(language, program.program(), functions, result).print(origin);
+                          FunctionLibrary& functions, Result result, std::vector<double>* rows) {
+  return ProgramPrinter(language, program.program(), functions, result, rows).print(origin);
 }
 
 std::string describe(const CompiledScene& scene) {
   return comment_text(fmt::format("{}: {}", scene.source.name(), scene.summary));
+}
+
+std::string list_rows(const Language& language, const std::vector<double>& rows) {
+  constexpr std::size_t kPerLine = 8;
+  std::string lines;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    lines += (i % kPerLine == 0 ? "  " : " ") + language.literal(rows[i]);
+    if (i + 1 < rows.size()) lines += ',';
+    if (i % kPerLine + 1 == kPerLine || i + 1 == rows.size()) lines += '\n';
+  }
+  return lines;
 }
 
 std::string list_surfaces(const CompiledScene& scene) {

@@ -107,6 +107,31 @@ void add_choices(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
+// Adds programs of bodies that repeat, which become loops: over shapes with and without tags, and over constants.
+void add_rows(std::vector<EmittedProgram>& programs, Random& random) {
+  const auto number = [&] { return random.uniform(-1.5, 1.5); };
+  for (const bool tagged : {false, true}) {
+    vm::Program rows;
+    rows.append(Opcode::Sphere, 0, {0.3}, {});
+    if (tagged) rows.append(Opcode::Tag, 1, {}, {});
+    for (int i = 0; i < 20; ++i)
+      rows.append(Opcode::Sphere, vm::kFusedTranslate | vm::kFusedMin, {number(), 0.25, number(), 0.1}, {});
+    for (int i = 0; i < 18; ++i) {
+      rows.append(Opcode::Translate, 0, {number(), number(), 0}, {});
+      rows.append(Opcode::Box, 0, {0.1, 0.2 + 0.01 * i, 0.1}, {});
+      rows.append(Opcode::Drop, 0, {}, {});
+      if (tagged) rows.append(Opcode::Tag, 2, {}, {});
+      rows.append(Opcode::SmoothMin, 0, {0.1 + 0.001 * i, 2.5}, {});
+    }
+    for (int i = 0; i < 17; ++i) {
+      rows.append(Opcode::Minus, vm::operand_of(vm::Sources{Source::X, Source::Constant}), {number()}, {});
+      rows.append(Opcode::Min, 0, {}, {});
+    }
+    for (int i = 0; i < 16; ++i) rows.append(Opcode::Negate, 0, {}, {});
+    programs.push_back(named(tagged ? "rows_tagged" : "rows", std::move(rows)));
+  }
+}
+
 // Adds programs with nested points, locals and tags; loops with immediates that keep the loops running; and a scene
 // far from the origin.
 void add_others(std::vector<EmittedProgram>& programs) {
@@ -162,6 +187,7 @@ std::vector<EmittedProgram> emitted_programs() {
   add_opcodes(programs, random);
   add_operands(programs, random);
   add_choices(programs, random);
+  add_rows(programs, random);
   add_others(programs);
   add_random_scenes(programs);
   return programs;
