@@ -27,6 +27,7 @@
 #include "runtime/cli/options/step_line.h"
 #include "runtime/cli/options/version.h"
 #include "runtime/cli/verbs.h"
+#include "runtime/field/pieces.h"
 #include "runtime/image/image_io.h"
 #include "runtime/measure/maps.h"
 #include "runtime/measure/measure_rays.h"
@@ -70,7 +71,8 @@ class Charts {
   // Measures and draws one scene. Does nothing after a write error.
   void add(const compiler::CompiledScene& scene, const std::string& name) {
     if (problem_) return;
-    const runtime::Field field = runtime::make_field(scene, scene.settings.far);
+    runtime::Field field = runtime::make_field(scene, scene.settings.far);
+    runtime::add_pieces(field, scene, runtime::extent_of(scene), scene.settings.far, false);
     runtime::PageScene section{name, {}, {}};
     add_rays(scene, field, section);
     if (!request_.no_images) add_pictures(scene, section);
@@ -221,7 +223,9 @@ std::variant<std::vector<NamedScene>, ExitCode> compile_scenes(const ChartReques
   std::vector<NamedScene> scenes;
   for (SceneInput& source : std::get<std::vector<SceneInput>>(sources)) {
     const std::string name = name_of(source.source, request);
-    auto compiled = compile_scene(std::move(source), request.scene, streams);
+    compiler::CompileOptions options;
+    options.pieces = true;
+    auto compiled = compile_scene(std::move(source), request.scene, streams, options);
     if (const auto* code = std::get_if<ExitCode>(&compiled)) return *code;
     scenes.push_back({name, std::get<compiler::CompiledScene>(std::move(compiled))});
   }

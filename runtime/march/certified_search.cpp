@@ -41,9 +41,6 @@ constexpr double kReach = 0.995, kLargestSlope = 0.9;
 // Near a root, a step has this length relative to the way to the root.
 constexpr double kOvershoot = 1.1;
 constexpr int kMaxRounds = 200;  // per bracket
-// In a solid, g within kLevelRoundings rounding errors of 0 is a surface if it stays there for longer than
-// kMinLevel max(1, |p|). Otherwise two parts of the solid touch there.
-constexpr double kLevelRoundings = 4, kMinLevel = 0x1p-20;
 
 }  // namespace
 

@@ -37,6 +37,10 @@ struct RayInterval {
   double hint;
 };
 
+// In a solid, g within kLevelRoundings rounding errors of 0 is a surface if it stays there for longer than
+// kMinLevel max(1, |p|). Otherwise two parts of the solid touch there.
+inline constexpr double kLevelRoundings = 4, kMinLevel = 0x1p-20;
+
 inline constexpr std::uint32_t kSearchBudget = 1u << 14;  // evaluations at full resolution
 
 class CertifiedSearch {

@@ -12,8 +12,6 @@ constexpr std::uint32_t kMaxStates = PieceStream::kLanes;
 // A ray that leaves a piece is in another if it is in it so far beyond the exit, relative to max(1, |p|): a millionth
 // of float's digits, and what double knows of an exit that the ray grazes by a thousandth.
 constexpr double kExitResolution = 0x1p-32;
-// Rounding errors of double by which a ray must be in a piece.
-constexpr double kRoundings = 4;
 // Share of t by which an exit found in float may be off: twice the tolerance of a root (tiered-inl.h).
 constexpr double kExitSlack = 0x1p-15;
 
@@ -108,10 +106,14 @@ bool PieceMarcher::enter_solid(RayState& state, double t) {
   pieces_.boxes.begin(state.ray.origin + t * state.ray.direction, state.ray.direction, state.ray.length - t, around_);
   for (BoxedPiece box; pieces_.boxes.next(around_, 0, box);) {
     const auto piece = static_cast<std::uint32_t>(box.piece);
-    const double rounding = pieces_.fields[piece].rounding(state.ray.origin + t * state.ray.direction);
-    if (!(value_at(state, piece, t) < -kRoundings * rounding)) continue;
+    const glm::dvec3 place = state.ray.origin + t * state.ray.direction;
+    const double level = kLevelRoundings * pieces_.fields[piece].rounding(place), value = value_at(state, piece, t);
+    if (!(value <= level)) continue;
+    // A ray that grazes a shared face is at the rounding level of 0 for a while.
+    const double from = value < -level ? t : t + kMinLevel * std::max(1.0, compiler::largest_part(place));
+    if (from > t && !(value_at(state, piece, from) < -level)) continue;
     state.piece = box.piece;
-    state.from = t, state.to = t + static_cast<double>(box.exit);
+    state.from = from, state.to = t + static_cast<double>(box.exit);
     return true;
   }
   return false;

@@ -42,7 +42,7 @@ std::vector<glm::dvec3> normals_at(const compiler::CompiledScene& scene, const F
       const double length = glm::length(gradient);
       if (length > 0) normals[i] = static_cast<double>(ray_hits[i].side) / length * gradient;
     } else {
-      const Hit hit{at, glm::vec3(-direction), ray_hits[i].side, ray_hits[i].width};
+      const Hit hit{at, glm::vec3(-direction), ray_hits[i].side, ray_hits[i].width, ray_hits[i].piece};
       SurfacePoint point{};
       find_surfaces(scene, field, std::span(&hit, 1), std::span(&point, 1), workspace);
       normals[i] = glm::dvec3(point.normal);
