@@ -153,9 +153,8 @@ void FieldCompiler::report_media(const Graph& graph, NodeId node, std::string_vi
   diagnostics.error(
       "E0312", graph.origin(node).span,
       fmt::format("the solids of the transparent materials have more than {} {} here", limits.media, what), "",
-      {"each transparent material has a solid, its bodies without what outranks them in their box: use fewer of "
-       "these "
-       "materials, or move their bodies apart",
+      {"each transparent material has a solid, its bodies without what outranks and may overlap them: use fewer of "
+       "these materials, or move their bodies apart",
        raise(&Limits::media, 2 * limits.media)});
 }
 

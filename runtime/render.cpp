@@ -119,10 +119,9 @@ RenderContext make_context(const compiler::CompiledScene& scene, const Settings&
   RegionStore* const store = options.region_store.get();
   const double evaluations = region_options(settings).evaluations;
   const auto prepare = [&](Field& field, const compiler::SplitField& split) {
-    const std::optional<RegionOptions> limited = settings.regions ? std::optional(regions) : std::nullopt;
     if (settings.pieces)
-      add_pieces(field, split, extent_of(scene), settings.far, settings.native_code, limited ? &*limited : nullptr,
-                 store);
+      add_pieces(field, split, extent_of(scene), settings.far, settings.native_code,
+                 settings.regions ? &regions : nullptr, store);
     if (!field.pieces && settings.regions) add_regions(field, split, regions, store);
     if (!field.pieces && settings.native_code) add_native_code(field, evaluations);
     for_each_part(field, [&](const Field& part) {

@@ -35,7 +35,7 @@ struct MediaMaker::Places {
 
 MediaMaker::MediaMaker(const Scene& scene, std::span<const Surface> surfaces, std::span<const Material> materials,
                        std::size_t most)
-    : materials_(materials) {
+    : materials_(materials), most_looks_(kLooksPerNode * most) {
   const std::vector<Painted> below = painted_below(scene, surfaces, materials);
   if (below[scene.root].transparent == kNoMaterial) return;
   graph_ = scene.graph;
@@ -58,29 +58,48 @@ MediaMaker::MediaMaker(const Scene& scene, std::span<const Surface> surfaces, st
   for (const auto& [material, own] : bodies_of) {
     media_.push_back(medium(own, places));
     nodes += reached(media_.back()).size();
-    if (nodes <= most && looks_ <= kLooksPerNode * most) continue;
+    if (nodes <= most && looks_ <= most_looks_) continue;
     excess_ = bodies_[own[0]].node;
     return;
   }
 }
 
-// Groups the bodies `own` of a material by the bodies that outrank them and may overlap them.
-MediaMaker::Medium MediaMaker::medium(std::span<const std::uint32_t> own, const Places& places) {
-  Medium medium{bodies_[own[0]].material, {}};
-  std::map<std::vector<NodeId>, std::size_t> group_of;  // [cuts]
+// Returns the bodies that outrank those of the sample's material and whose boxes meet `box`.
+std::vector<NodeId> MediaMaker::cuts_within(const Box& box, const Body& sample, const Places& places) {
   std::vector<std::uint32_t> near;
+  looks_ += places.tree.find(box, near);
+  std::vector<NodeId> cuts;
+  for (const std::uint32_t i : near) {
+    const Body& body = bodies_[i];
+    const bool is_own = body.transparent && body.material == sample.material;
+    if (!is_own && outranks(body, sample, materials_)) cuts.push_back(body.node);
+  }
+  return cuts;
+}
+
+// Groups the bodies `own` of a material by the bodies that outrank them and may overlap them. If each body has many
+// of these, all bodies are one group.
+MediaMaker::Medium MediaMaker::medium(std::span<const std::uint32_t> own, const Places& places) {
+  constexpr std::size_t kCutsPerBody = 4;
+  const Body& sample = bodies_[own[0]];
+  Medium medium{sample.material, {}};
+  std::map<std::vector<NodeId>, std::size_t> group_of;  // [cuts]
+  std::size_t references = 0;
+  Box all;
+  Group together;
   for (const std::uint32_t one : own) {
-    std::vector<NodeId> cuts;
-    looks_ += places.tree.find(places.boxes[one], near);
-    for (const std::uint32_t i : near) {
-      const Body& body = bodies_[i];
-      const bool is_own = body.transparent && body.material == medium.material;
-      if (!is_own && outranks(body, bodies_[one], materials_)) cuts.push_back(body.node);
-    }
+    all = unite(all, places.boxes[one]);
+    together.own.push_back(bodies_[one].node);
+    if (references > kCutsPerBody * bodies_.size() || looks_ > most_looks_) continue;
+    std::vector<NodeId> cuts = cuts_within(places.boxes[one], sample, places);
     const auto [found, is_new] = group_of.try_emplace(cuts, medium.groups.size());
+    references += is_new ? cuts.size() : 0;
     if (is_new) medium.groups.push_back({{}, std::move(cuts)});
     medium.groups[found->second].own.push_back(bodies_[one].node);
   }
+  if (references <= kCutsPerBody * bodies_.size()) return medium;
+  together.cuts = cuts_within(all, sample, places);
+  medium.groups = {std::move(together)};
   return medium;
 }
 

@@ -54,6 +54,7 @@ class MediaMaker {
     std::vector<Group> groups;
   };
   struct Places;
+  std::vector<NodeId> cuts_within(const Box& box, const Body& sample, const Places& places);
   Medium medium(std::span<const std::uint32_t> own, const Places& places);
   const std::vector<NodeId>& reached(const Medium& medium);
 
@@ -62,7 +63,7 @@ class MediaMaker {
   std::vector<Body> bodies_;
   std::vector<Medium> media_;
   std::optional<NodeId> excess_;
-  std::size_t looks_ = 0;               // number of box tests so far
+  std::size_t most_looks_, looks_ = 0;  // number of box tests: the limit, and so far
   std::vector<std::uint32_t> walk_of_;  // [node] number of the last walk that reached it
   std::uint32_t walk_ = 0;
   std::vector<NodeId> reached_;

@@ -12,6 +12,7 @@
 #include "compiler/artefact/programs.h"
 #include "compiler/source/limits.h"
 #include "vm/encoding/binary.h"
+#include "vm/encoding/repeats.h"
 
 namespace fathom::compiler {
 namespace {
@@ -83,26 +84,28 @@ FileError damaged(std::string_view section, std::string_view what) {
 }
 
 std::variant<ProgramList, FileError> read_code(std::span<const std::uint8_t> bytes, const Limits& limits) {
-  // Words per instruction that most programs stay below, and the number of programs of the greatest size.
-  constexpr double kWords = 16, kPrograms = 4;
   vm::ByteReader in(bytes);
   const std::size_t media = in.u32(), formulas = in.u32();
-  // A program takes 20 bytes at least.
-  const bool room = media <= bytes.size() / 40 && formulas <= bytes.size() / 20;
+  // A program takes 28 bytes at least.
+  const bool room = media <= bytes.size() / 56 && formulas <= bytes.size() / 28;
   if (in.failed() || !room) return damaged("code", "is cut off");
   ProgramList list(media, formulas);
   vm::ProgramDecoder decoder;
   vm::Limits machine = largest_machine();
-  const double most = kWords * limits.instructions;
+  // Straight code has fewer words than bytes. Rows and copies have more, for a few programs of the greatest size.
+  constexpr double kPrograms = 4;
+  const double most =
+      static_cast<double>(bytes.size()) + static_cast<double>(vm::kWordsPerInstruction) * limits.instructions;
   double left = kPrograms * most;
   while (!list.full()) {
     const std::size_t begin = in.offset();
     machine.words = static_cast<std::uint32_t>(std::min({static_cast<double>(machine.words), most, left}));
     auto program = decoder.read(in, machine);
     if (const auto* error = std::get_if<vm::VerifyError>(&program)) {
-      return FileError{fmt::format("program `{}` at byte {} of the code, word {}: {}", list.next(), begin,
-                                   error->offset, error->reason),
-                       ""};
+      return FileError{
+          fmt::format("program `{}` at byte {} of the code, word {}: {}", list.next(), begin, error->offset,
+                      error->reason),
+          error->reason.ends_with("allowed") ? raise(&Limits::instructions, 2 * limits.instructions) : ""};
     }
     list.add(std::get<vm::VerifiedProgram>(std::move(program)));
     left -= static_cast<double>(list.programs.back().program().words.size());

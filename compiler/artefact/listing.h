@@ -1,6 +1,6 @@
 // A compiled scene as text without loss: the output of `fathom dump --stage file` and the input of `fathom asm`.
 //
-//     fathom 5
+//     fathom 6
 //     machine 6f1c...            ; the digest of the opcodes
 //     tables {
 //       "summary": "1 node, ...",

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -84,6 +82,7 @@ class ProgramPrinter {
   // True if the body of the next block changes nothing but the top value. The points of an outline are no numbers of
   // its function, and a local would be needed after the loop.
   bool is_loop(const vm::Repeat& block) const {
+    if (values_.empty()) return false;
     int values = 0, points = 0;
     for (std::size_t i = next_; i < next_ + block.length; ++i) {
       const std::uint32_t word = program_.words[offsets_[i]];
@@ -97,10 +96,17 @@ class ProgramPrinter {
     return values == 0 && points == 0;
   }
 
-  bool has_tag(const vm::Repeat& block) const {
+  // True if the body of the next block has a tag, or a local, whose value may have a surface.
+  bool may_tag(const vm::Repeat& block) const {
     const auto body = std::span(offsets_).subspan(next_, block.length);
-    return std::ranges::any_of(
-        body, [this](std::size_t at) { return static_cast<Opcode>(program_.words[at] & 0xff) == Opcode::Tag; });
+    return std::ranges::any_of(body, [this](std::size_t at) {
+      const std::uint32_t word = program_.words[at];
+      const OpcodeInfo& row = vm::info(static_cast<Opcode>(word & 0xff));
+      const bool function = row.form == Form::Unary || row.form == Form::Binary;
+      const vm::Sources sources = vm::sources_of(word);
+      return row.opcode == Opcode::Tag || row.opcode == Opcode::Load ||
+             (function && (sources.a == vm::Source::Local || sources.b == vm::Source::Local));
+    });
   }
 
   void loop(const vm::Repeat& block) {
@@ -109,15 +115,17 @@ class ProgramPrinter {
     const std::string number = fmt::format("d{}", ++value_names_);
     out_ += fmt::format("  {} {} = {};\n", language_.number_type, number, start.number.text);
     std::string surface = "-1";
-    if (result_ == Result::Surface && (start.surface != "-1" || has_tag(block))) {
+    if (result_ == Result::Surface && (start.surface != "-1" || may_tag(block))) {
       surface = fmt::format("s{}", ++surface_names_);
       out_ += fmt::format("  int {} = {};\n", surface, start.surface);
     }
     out_ += fmt::format("  for (int i = 0; i < {}; ++i) {{\n", block.rows);
     add_rows(block);
-    values_.push_back({{number}, surface, start.tagged});
+    values_.push_back({{number}, surface, false});  // as any row may leave it
     const std::string before = std::exchange(out_, "");
+    loop_end_ = after, loop_length_ = block.length;
     for (std::size_t i = 0; i < block.length; ++i) instruction();
+    loop_end_ = 0;
     row_texts_.clear();
     const Value end = pop();
     out_ += fmt::format("  {} = {};\n", number, end.number.text);
@@ -130,21 +138,13 @@ class ProgramPrinter {
     }
     out_ += "  }\n";
     next_ = after;
-    values_.push_back({{number}, surface, start.tagged && end.tagged});
+    values_.push_back({{number}, surface, end.tagged});
   }
-
-  static std::uint64_t bits_of(double number) { return std::bit_cast<std::uint64_t>(number); }
 
   // Adds the numbers of the next block that differ between its rows, and sets the texts that stand for them.
   void add_rows(const vm::Repeat& block) {
     const std::size_t begin = offsets_[next_], stride = offsets_[next_ + block.length] - begin;
-    std::vector<std::size_t> varying;
-    for (std::size_t word = begin; word < begin + stride; ++word) {
-      bool differs = false;
-      for (std::size_t row = 1; row < block.rows; ++row)
-        differs = differs || bits_of(program_.doubles[word + row * stride]) != bits_of(program_.doubles[word]);
-      if (differs) varying.push_back(word);
-    }
+    const std::vector<std::size_t> varying = vm::varying_words(program_, begin, stride, block.rows);
     std::vector<double> numbers;
     for (std::size_t row = 0; row < block.rows; ++row) {
       for (const std::size_t word : varying) numbers.push_back(program_.doubles[word + row * stride]);
@@ -164,8 +164,16 @@ class ProgramPrinter {
     return row_texts_.empty() ? std::span<const std::string>() : std::span(row_texts_).subspan(word - row_begin_);
   }
 
+  // True if the instruction is of the same node in all rows of a loop.
+  bool is_one_node(std::size_t instruction) const {
+    for (std::size_t i = instruction; i < loop_end_; i += loop_length_) {
+      if (program_.debug[i].symbol != program_.debug[instruction].symbol) return false;
+    }
+    return true;
+  }
+
   void instruction() {
-    const bool known = language_.has_comments && next_ < program_.debug.size();
+    const bool known = language_.has_comments && next_ < program_.debug.size() && is_one_node(next_);
     comment_ = known && program_.debug[next_].symbol.ends_with('"') ? program_.debug[next_].symbol : "";
     const std::size_t at = offsets_[next_++];
     const std::uint32_t word = program_.words[at];
@@ -335,6 +343,7 @@ class ProgramPrinter {
   std::vector<Value> values_, locals_;
   std::size_t next_ = 0, leading_ = 0;  // the next instruction; word of the next leading immediate
   std::vector<std::string> row_texts_;  // [word of the body] within a loop
+  std::size_t loop_end_ = 0, loop_length_ = 1;  // instructions, within a loop
   std::size_t row_begin_ = 0;           // word
   std::string out_;
   std::string comment_;  // the instruction's symbol, if the scene gives it a name

@@ -23,10 +23,9 @@ constexpr const char* kEmitExamples =
     "fathom emit glsl scene.fathom --surfaces      # scene_surface(p), too\n"
     "fathom emit html scene.fathom -o scene.html   # open it in a browser\n"
     "\n"
-    "The C++ function is a template; the head of the file lists what a type needs apart from float and double. The "
-    "text\n"
-    "is as long as the listing of `fathom dump`. For ten thousand objects a compiler takes minutes, and a graphics\n"
-    "driver may refuse it.";
+    "The C++ function is a template; the head of the file lists what a type needs apart from float and double.\n"
+    "Objects that differ in numbers alone become a loop over an array. A compiler takes minutes for thousands of\n"
+    "different objects, and a graphics driver may refuse them, or such an array.";
 
 enum Language { kCpp, kGlsl, kHtml };
 

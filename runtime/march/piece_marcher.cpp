@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t kFewRays = 32;
 // Maximum number of rays under way: each has a lane.
 constexpr std::uint32_t kMaxStates = PieceStream::kLanes;
-// A ray that leaves a piece is in another if it is in it so far beyond the exit, relative to max(1, |p|): a millionth
-// of float's digits, and what double knows of an exit that the ray grazes by a thousandth.
+// Length beyond an exit, relative to max(1, |p|), at which a ray is in the next piece if it goes on: above the error
+// in double of an exit that the ray meets at a slope of a hundred thousandth.
 constexpr double kExitResolution = 0x1p-32;
 // Share of t by which an exit found in float may be off: twice the tolerance of a root (tiered-inl.h).
 constexpr double kExitSlack = 0x1p-15;

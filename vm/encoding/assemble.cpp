@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vm/encoding/escape.h"
+#include "vm/encoding/repeats.h"
 #include "vm/program/verify.h"
 
 namespace fathom::vm {
@@ -97,6 +98,7 @@ class Assembler {
     if (error_ || tokens_.empty()) return;
     if (tokens_[0] == "each") return begin_body();
     if (tokens_[0] == "rows" && body_) return begin_rows();
+    if (tokens_[0] == "end" && body_) return fail(tokens_[0], "`rows` is missing before `end`");
     if (tokens_[0] == "locals" && program_.words.empty()) return read_locals();
     const OpcodeInfo* row = find_mnemonic(tokens_[0]);
     if (row == nullptr) {
@@ -115,10 +117,7 @@ class Assembler {
     program_.append(opcode, draft.operand, draft.immediates, std::move(place));
     if (lines_) lines_->push_back(line_);
   }
-  // Rows may ask for more than a machine runs, in a few characters.
   void append_row() {
-    if (program_.debug.size() + body_->parts.size() > most_)
-      return fail(text_.substr(each_, 4), fmt::format("more than {} instructions", most_));
     for (const Body::Part& part : body_->parts) append(part.opcode, part.draft, part.place);
   }
 
@@ -131,38 +130,57 @@ class Assembler {
     each_ = line_;
   }
   void begin_rows() {
-    if (body_->parts.empty()) return fail(tokens_[0], "`rows` stands after the instructions that they are of");
-    std::ranges::sort(body_->slots, {}, &Body::Slot::at);
-    body_->complete = true;
+    Body& body = *body_;
+    if (body.parts.empty()) return fail(tokens_[0], "`rows` stands after the instructions that they are of");
+    std::ranges::sort(body.slots, {}, &Body::Slot::at);
+    body.complete = true;
+    // A few characters ask for any number of rows.
+    Program once;
+    std::size_t symbols = 0;
+    for (const Body::Part& part : body.parts) {
+      once.append(part.opcode, part.draft.operand, part.draft.immediates, {});
+      symbols += part.place.symbol.size();
+    }
+    const std::size_t instructions = program_.debug.size() + body.rows * body.parts.size();
+    if (instructions > most_ || body.rows * once.words.size() > kWordsPerInstruction * most_ ||
+        body.rows * symbols > kMostRowSymbols) {
+      fail(text_.substr(each_, 4), fmt::format("the rows make a program of more than {} instructions, or as large: "
+                                               "`--limit instructions=N` allows more",
+                                               most_));
+    }
   }
 
   // Reads the numbers of a row, or `end`.
   void read_row(std::string_view line) {
     Body& body = *body_;
-    std::size_t given = 0;
-    for (std::size_t at = 0; !error_;) {
+    tokens_.clear();
+    for (std::size_t at = 0;;) {
       at = line.find_first_not_of(" \t\r", at);
       if (at == line.npos || line[at] == ';') break;
       const std::size_t end = std::min(line.find_first_of(" \t\r;", at), line.size());
-      const Token token = line.substr(at, end - at);
+      tokens_.push_back(line.substr(at, end - at));
       at = end;
-      if (token == "end" && given == 0) return end_body(token);
-      if (token == "...") return fail(token, "this listing leaves out rows: `fathom dump --stage file` lists all");
-      if (given == body.slots.size() || body.read == body.rows) return fail(token, "more numbers than `each` has");
-      const Body::Slot& slot = body.slots[given++];
-      body.parts[slot.part].draft.immediates[slot.immediate] = number(token);
     }
-    if (error_ || (given == 0 && !body.slots.empty())) return;
-    if (given < body.slots.size())
-      return fail(line, fmt::format("a row has {} numbers, not {}", body.slots.size(), given));
-    if (body.slots.empty()) return;
+    if (tokens_.empty()) return;
+    const Token first = tokens_[0];
+    if (first == "end") return tokens_.size() == 1 ? end_body(first) : fail(tokens_[1], "nothing follows `end`");
+    if (first == "...") return fail(first, "this listing leaves out rows: `fathom dump --stage file` lists all");
+    if (!to_number<double>(first)) return fail(first, "neither a row of numbers nor `end`");
+    if (body.read == body.rows || body.slots.empty())
+      return fail(first, fmt::format("`each` has {} rows with numbers: `end` is missing here", body.read));
+    if (tokens_.size() != body.slots.size())
+      return fail(line, fmt::format("a row has {} numbers, not {}", body.slots.size(), tokens_.size()));
+    for (std::size_t i = 0; i < tokens_.size() && !error_; ++i) {
+      const Body::Slot& slot = body.slots[i];
+      body.parts[slot.part].draft.immediates[slot.immediate] = number(tokens_[i]);
+    }
     ++body.read;
-    append_row();
+    if (!error_) append_row();
   }
   void end_body(Token token) {
     const Body& body = *body_;
-    // Rows without numbers are not written.
-    for (std::size_t row = 0; body.slots.empty() && row < body.rows && !error_; ++row) append_row();
+    // A listing has no lines for rows without numbers.
+    for (std::size_t row = 0; body.slots.empty() && row < body.rows; ++row) append_row();
     if (!body.slots.empty() && body.read != body.rows)
       return fail(token, fmt::format("`each` has {} rows, not {}", body.rows, body.read));
     body_.reset();
@@ -329,7 +347,11 @@ class Assembler {
 
   // Reads a float immediate. In a body `#` stands for a number of its rows.
   double immediate(Token token, const Draft& draft) {
-    if (!body_ || token != "#") return number(token);
+    if (token != "#") return number(token);
+    if (!body_) {
+      fail(token, "`#` stands for the numbers of rows, in a body that `each` begins");
+      return 0;
+    }
     body_->slots.push_back({token.data(), body_->parts.size(), draft.immediates.size()});
     return 0;
   }

@@ -55,7 +55,7 @@ double read_number(ByteReader& in, bool narrow) {
 InstructionHistory::Stretch InstructionHistory::find(const Program& program, std::span<const std::size_t> places,
                                                      std::size_t first) const {
   if (first + kLeastCopy > places.size()) return {};
-  const auto found = first_.find(hash_of(program, places[first], kLeastCopy));
+  const auto found = first_.find(hash_of(program, places[first]));
   if (found == first_.end()) return {};
   Stretch stretch{found->second, 0};
   const auto equal = [&](std::size_t from, std::size_t at, std::size_t size) {
@@ -73,11 +73,11 @@ InstructionHistory::Stretch InstructionHistory::find(const Program& program, std
   return words < kLeastWords ? Stretch{} : stretch;
 }
 
-// Returns a number made of `count` instructions from the word `at` on.
-std::uint64_t InstructionHistory::hash_of(const Program& program, std::size_t at, std::size_t count) {
+// Returns a number made of kLeastCopy instructions from the word `at` on.
+std::uint64_t InstructionHistory::hash_of(const Program& program, std::size_t at) {
   std::uint64_t hash = 0;
   const auto mix = [&hash](std::uint64_t word) { hash = (std::rotl(hash, 23) ^ word) * 0x9E3779B97F4A7C15u; };
-  for (; count > 0; --count) {
+  for (std::size_t i = 0; i < kLeastCopy; ++i) {
     const std::size_t end = at + instruction_length(program.words[at]);
     for (; at < end; ++at) mix(program.words[at]), mix(bits_of(program.doubles[at]));
   }
@@ -87,7 +87,7 @@ std::uint64_t InstructionHistory::hash_of(const Program& program, std::size_t at
 void InstructionHistory::add(const Program& program) {
   const std::vector<std::size_t> places = offsets_of(program);
   for (std::size_t i = 0; i + kLeastCopy <= places.size(); ++i)
-    first_.try_emplace(hash_of(program, places[i], kLeastCopy), places_.size() + i);
+    first_.try_emplace(hash_of(program, places[i]), places_.size() + i);
   for (const std::size_t at : places) places_.push_back(words_.size() + at);
   words_.insert(words_.end(), program.words.begin(), program.words.end());
   doubles_.insert(doubles_.end(), program.doubles.begin(), program.doubles.end());
@@ -163,14 +163,13 @@ void ProgramEncoder::write_column(ByteWriter& out, std::vector<std::uint64_t> co
     kind(narrow ? ColumnKind::One32 : ColumnKind::One64);
     return write_number(out, column[0], narrow);
   }
-  const auto same = std::ranges::find(columns_, column);
-  if (same != columns_.end()) {
+  const auto [same, is_new] = columns_.try_emplace(column, static_cast<std::uint32_t>(columns_.size()));
+  if (!is_new) {
     kind(ColumnKind::Same);
-    return out.u32(static_cast<std::uint32_t>(same - columns_.begin()));
+    return out.u32(same->second);
   }
   kind(narrow ? ColumnKind::Each32 : ColumnKind::Each64);
   for (const std::uint64_t value : column) write_number(out, value, narrow);
-  columns_.push_back(std::move(column));
 }
 
 // Reads the numbers of a column: one, or one for each row.
@@ -196,7 +195,7 @@ std::vector<double> ProgramDecoder::read_column(ByteReader& in, std::size_t rows
 std::string ProgramDecoder::read_block(ByteReader& in, std::size_t most, Program& program) {
   const std::size_t length = in.u32(), rows = in.u32();
   const std::string nonsense = "a block of instructions that makes no sense";
-  if (rows == 0) return history_.append({in.u32(), length}, most, program) ? "" : nonsense;
+  if (rows == 0) return encoder_.history_.append({in.u32(), length}, most, program) ? "" : nonsense;
   std::vector<std::uint32_t> body;
   columns_.clear();
   std::vector<std::pair<std::size_t, std::vector<double>>> columns;  // by the word in the body
@@ -251,7 +250,6 @@ std::variant<VerifiedProgram, VerifyError> ProgramDecoder::read(ByteReader& in, 
   }
   ByteWriter again;
   encoder_.write(again, *good);
-  history_.add(good->program());
   ByteReader read = whole;
   if (!std::ranges::equal(again.bytes(), read.raw(in.offset() - whole.offset())))
     return VerifyError{0, "the program is not in the shortest form"};
@@ -294,6 +292,7 @@ DebugTable read_debug(ByteReader& in, const VerifiedProgram& program) {
     entry.symbol = in.text(in.left());
     if (entry.line == 0 && entry.column != 0) in.fail();
   }
+  std::size_t room = kMostRowSymbols;
   for (std::size_t left = in.count(12); left > 0 && !in.failed(); --left) {
     const std::size_t length = in.count(4), rows = in.u32(), begin = table.entries.size();
     if (length == 0 || rows == 0 || length > (program.instructions() - begin) / rows) in.fail();
@@ -305,8 +304,12 @@ DebugTable read_debug(ByteReader& in, const VerifiedProgram& program) {
         table.entries.push_back(different[number]);
       }
     }
-    for (std::size_t i = 0; i + length < rows * length && !in.failed(); ++i)
-      table.entries.push_back(DebugEntry(table.entries[begin + i]));
+    for (std::size_t i = 0; i + length < rows * length && !in.failed(); ++i) {
+      DebugEntry again = table.entries[begin + i];
+      if (again.symbol.size() > room) in.fail();
+      room -= std::min(room, again.symbol.size());
+      table.entries.push_back(std::move(again));
+    }
   }
   if (!table.entries.empty() && table.entries.size() != program.instructions()) in.fail();
   if (in.failed()) return table;

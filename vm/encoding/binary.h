@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,7 +29,7 @@ class InstructionHistory {
   bool append(const Stretch& stretch, std::size_t most, Program& program) const;
 
  private:
-  static std::uint64_t hash_of(const Program& program, std::size_t at, std::size_t count);
+  static std::uint64_t hash_of(const Program& program, std::size_t at);
 
   std::vector<std::uint32_t> words_;
   std::vector<double> doubles_;
@@ -44,11 +45,12 @@ class ProgramEncoder {
   void write(ByteWriter& out, const VerifiedProgram& program);
 
  private:
+  friend class ProgramDecoder;  // has the history of what it writes again
   void write_blocks(ByteWriter& out, const Program& program, std::span<const std::size_t> places);
   void write_column(ByteWriter& out, std::vector<std::uint64_t> column);
 
   InstructionHistory history_;
-  std::vector<std::vector<std::uint64_t>> columns_;  // of the block, with a number for each row: their bits
+  std::map<std::vector<std::uint64_t>, std::uint32_t> columns_;  // of the block: bits of each row's number -> number
 };
 
 // Reads what ProgramEncoder wrote. Refuses other forms of the same programs.
@@ -60,7 +62,6 @@ class ProgramDecoder {
   std::vector<double> read_column(ByteReader& in, std::size_t rows);
   std::string read_block(ByteReader& in, std::size_t most, Program& program);
 
-  InstructionHistory history_;
   std::vector<std::vector<double>> columns_;  // of the block
   ProgramEncoder encoder_;
 };

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <bit>
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
@@ -145,7 +145,7 @@ class Disassembler {
     next_ = after;
     text_ += "rows\n";
     bool left_out = false;
-    for (std::size_t row = 0; row < block.rows; ++row) {
+    for (std::size_t row = 0; row < block.rows && !varying.empty(); ++row) {
       const std::size_t number = first_row_ + row;
       const bool few = row < kShownRows || row + kShownRows >= block.rows;
       if (rows_.range ? number < rows_.range->first || number >= rows_.range->second : rows_.few && !few) {
@@ -162,17 +162,13 @@ class Disassembler {
     text_ += "end\n";
   }
 
-  // Returns the offsets of the immediates of the first row that differ in another row, in the order of the text.
+  // Returns the offsets of the immediates that rows give, in the order of the text.
   std::vector<std::size_t> varying_of(const Repeat& block, std::size_t stride) const {
+    const std::vector<std::size_t> differ = varying_words(program_, offsets_[next_], stride, block.rows);
     std::vector<std::size_t> varying;
     for (std::size_t i = 0; i < block.length; ++i) {
       text_of(program_, offsets_[next_ + i], [&](std::size_t word) -> std::string {
-        const auto bits = [&](std::size_t row) {
-          return std::bit_cast<std::uint64_t>(program_.doubles[word + row * stride]);
-        };
-        std::size_t row = 1;
-        while (row < block.rows && bits(row) == bits(0)) ++row;
-        if (row < block.rows) varying.push_back(word);
+        if (std::ranges::binary_search(differ, word)) varying.push_back(word);
         return "";
       });
     }

@@ -1,5 +1,6 @@
 #include "vm/encoding/repeats.h"
 
+#include <bit>
 #include <map>
 #include <string_view>
 #include <tuple>
@@ -67,6 +68,20 @@ std::vector<std::uint64_t> code_keys(const Program& program, std::span<const std
     keys.push_back(number << 32 | program.words[at]);
   }
   return keys;
+}
+
+std::vector<std::size_t> varying_words(const Program& program, std::size_t begin, std::size_t stride,
+                                       std::size_t rows) {
+  std::vector<std::size_t> varying;
+  for (std::size_t word = begin; word < begin + stride; ++word) {
+    const auto bits = [&](std::size_t row) {
+      return std::bit_cast<std::uint64_t>(program.doubles[word + row * stride]);
+    };
+    std::size_t row = 1;
+    while (row < rows && bits(row) == bits(0)) ++row;
+    if (row < rows) varying.push_back(word);
+  }
+  return varying;
 }
 
 std::vector<std::uint64_t> debug_keys(std::span<const DebugEntry> entries,

@@ -12,6 +12,10 @@
 
 namespace fathom::vm {
 
+// Limits on what the few bytes of rows may ask for: words per instruction of a program, which most programs stay
+// below, and bytes of the symbols in debug entries.
+inline constexpr std::size_t kWordsPerInstruction = 16, kMostRowSymbols = 128 << 20;
+
 // `rows` times a body of `length` instructions. A block without a repeat has one row.
 struct Repeat {
   std::size_t length, rows;
@@ -29,6 +33,11 @@ std::vector<std::uint64_t> code_keys(const Program& program, std::span<const std
 
 // Returns keys of debug entries, equal if line, column and symbol are: indices into `different`.
 std::vector<std::uint64_t> debug_keys(std::span<const DebugEntry> entries, std::vector<const DebugEntry*>& different);
+
+// Returns the offsets of the words of a body whose doubles are not the same in all rows. The first row begins at
+// `begin`, each `stride` words after the one before.
+std::vector<std::size_t> varying_words(const Program& program, std::size_t begin, std::size_t stride,
+                                       std::size_t rows);
 
 // Calls body(word, is_float) for the offsets of the immediates of the instruction with this opcode word at `offset`.
 template <typename Body>

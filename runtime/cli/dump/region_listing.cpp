@@ -65,9 +65,10 @@ std::optional<std::string> region_listing(const compiler::CompiledScene& scene, 
   } else {
     const vm::VerifiedProgram part = as_program(region.part, whole.program());
     if (std::isfinite(region.limit)) text += fmt::format("; holds where the field is at most {:.6g}\n", region.limit);
-    text += fmt::format("; {}\n", size_of(part.instructions(), part.cost())) + vm::disassemble(part);
+    text += fmt::format("; {}\n", size_of(part.instructions(), part.cost())) + vm::disassemble(part, {.few = true});
   }
-  return text + fmt::format("\n; whole: {}\n", size_of(whole.instructions(), whole.cost())) + vm::disassemble(whole);
+  return text + fmt::format("\n; whole: {}\n", size_of(whole.instructions(), whole.cost())) +
+         vm::disassemble(whole, {.few = true});
 }
 
 }  // namespace fathom::cli

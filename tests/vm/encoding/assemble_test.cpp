@@ -145,16 +145,28 @@ TEST_CASE("rows without a body, or too few, are refused", "[encoding][assemble]"
   CHECK(assembled("each 3\nsphere 1\nrows\nend\nmin\nmin\n").words.size() == 8);
   CHECK(assembled("each 2\nsphere #\nrows ; radius\n\n 1 ; the first\n2\nend\nmin\n").words.size() == 5);
   refused("each 2\nsphere #\nrows\n 1\nend\nmin\n", "end", "`each` has 2 rows, not 1");
-  refused("each 2\nsphere #\nrows\n1\n2\n3\nend\nmin\n", "3", "more numbers than `each` has");
+  refused("each 2\nsphere #\nrows\n1\n2\n3\nend\nmin\n", "3", "`end` is missing here");
+  refused("each 2\nsphere #\nrows\n1\n2\nmin\n", "min", "neither a row of numbers nor `end`");
   refused("each 2\nsphere # at # # #\nrows\n1 2\n", "1 2", "a row has 4 numbers, not 2");
-  refused("each 2\nsphere #\nrows\nx\n", "x", "not a number");
+  refused("each 2\nsphere #\nrows\nx\n", "x", "neither a row");
+  refused("each 2\nsphere # at # 0 0\nrows\n1 x\n", "x", "not a number");
   refused("each 2\nsphere #\n", "each", "`each` has no `end`");
+  refused("each 2\nsphere #\nend\n", "end", "`rows` is missing");
+  refused("each 2\nsphere #\nrows\n1\n2\nend sphere 7 min\n", "sphere", "nothing follows `end`");
   refused("each 2\nrows\n", "rows", "after the instructions");
   refused("each\nsphere #\n", "each", "with how many rows");
   refused("each 2\neach 2\n", "each", "with how many rows");
-  refused("each 4000000000\nsphere 1\nrows\nend\n", "each", "more than 1000000 instructions");
-  refused("sphere #\n", "#", "not a number");
+  refused("sphere #\n", "#", "in a body that `each` begins");
   refused("rows\n", "rows", "no instruction");
+}
+
+// Each of these asked for gigabytes: rows, the points of a polygon in each row, a name in each row.
+TEST_CASE("a few characters of rows make no large program", "[encoding][assemble]") {
+  refused("each 4000000000\nsphere 1\nrows\nend\n", "each", "more than 1000000 instructions");
+  std::string polygon = "polygon 1000 ";
+  for (int i = 0; i < 1000; ++i) polygon += " 0 1";
+  refused("each 900000\n" + polygon + "\nrows\nend\n", "each", "or as large");
+  refused("each 900000\nsphere 1 @1:1 " + std::string(1000, 'n') + "\nrows\nend\n", "each", "or as large");
 }
 
 TEST_CASE("escaped texts lie on one line and read back", "[encoding][assemble]") {
