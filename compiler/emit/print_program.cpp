@@ -156,7 +156,9 @@ class ProgramPrinter {
     row_texts_.assign(stride, "");
     row_begin_ = begin;
     for (std::size_t k = 0; k < varying.size(); ++k)
-      row_texts_[varying[k] - begin] = fmt::format("{}row({} * i + {})", language_.prefix, varying.size(), first + k);
+      row_texts_[varying[k] - begin] = fmt::format("{}row({}{})", language_.prefix,
+                                                   varying.size() == 1 ? "i" : fmt::format("{} * i", varying.size()),
+                                                   first + k == 0 ? "" : fmt::format(" + {}", first + k));
   }
 
   // Returns the texts that stand for the immediates from `word` on, none outside of loops.

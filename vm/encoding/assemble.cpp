@@ -144,7 +144,7 @@ class Assembler {
     const std::size_t instructions = program_.debug.size() + body.rows * body.parts.size();
     if (instructions > most_ || body.rows * once.words.size() > kWordsPerInstruction * most_ ||
         body.rows * symbols > kMostRowSymbols) {
-      fail(text_.substr(each_, 4), fmt::format("the rows make a program of more than {} instructions, or as large: "
+      fail(text_.substr(each_, 4), fmt::format("the rows make a program larger than one of {} instructions may be: "
                                                "`--limit instructions=N` allows more",
                                                most_));
     }

@@ -62,7 +62,7 @@ TEST_CASE("bodies that repeat are a loop over rows of numbers", "[emit]") {
   float d1 = many_sphere(many_translate(p, 0.0, 0.5, 0.0), 0.5);
   float d2 = d1;
   for (int i = 0; i < 29; ++i) {
-    float d3 = min(many_sphere(many_translate(p, many_row(2 * i + 0), 0.5, many_row(2 * i + 1)), 0.5), d2);
+    float d3 = min(many_sphere(many_translate(p, many_row(2 * i), 0.5, many_row(2 * i + 1)), 0.5), d2);
     d2 = d3;
   }
   return d2;
