@@ -12,8 +12,8 @@ namespace {
 using namespace fathom::test;
 using Catch::Contains;
 
-// Long enough to be interrupted: 0.6 s on one core in a release build, 1 s under the sanitizers.
-const std::string kSpp = fathom::test::few_cases() ? "96" : "400";
+// Long enough to be interrupted: a second on a fast machine.
+const std::string kSpp = fathom::test::few_cases() ? "400" : "1600";
 const std::string kSlow = R"({
   "version": 1,
   "params": {"r": 0.5},
