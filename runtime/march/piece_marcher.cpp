@@ -22,7 +22,6 @@ PieceMarcher::PieceMarcher(const Field& field, const Marching& marching)
       pieces_(*field.pieces),
       marching_(marching),
       register_lanes_(register_lanes()),
-      whole_(field, marching),
       searches_(field),
       streams_(pieces_.templates.size()),
       own_(pieces_.templates.size()),
@@ -54,9 +53,9 @@ void PieceMarcher::begin(RayBlock& rays) {
       ready_.push_back(number);
     } else if (enter_solid(state, 0)) {
       start(number);
-    } else {
-      state.piece = kWhole;
-      whole_.add(number, {state.ray.origin, state.ray.direction, state.ray.length, -1, state.slope});
+    } else {  // it has left the solid where it begins
+      state.roots.push_back({0, 0, kNoPiece, -1});
+      end_ray(number);
     }
   }
 }
@@ -65,14 +64,7 @@ void PieceMarcher::begin(RayBlock& rays) {
 int PieceMarcher::side_at(glm::dvec3 place) {
   if (place == place_) return side_;
   place_ = place;
-  side_ = 1;
-  pieces_.boxes.begin(place, {1, 0, 0}, 0, around_);
-  std::uint64_t instructions = 0;
-  for (BoxedPiece found; side_ == 1 && pieces_.boxes.next(around_, 0, found);) {
-    const Field& piece = pieces_.fields[static_cast<std::size_t>(found.piece)];
-    if (piece.evaluate(place, real_scratch_, instructions) < 0) side_ = -1;
-  }
-  return side_;
+  return side_ = find_solid(field_, place, real_scratch_) ? -1 : 1;
 }
 
 // Has the ray enter the next box that it has to, or ends it.
@@ -103,10 +95,10 @@ double PieceMarcher::value_at(RayState& state, std::uint32_t piece, double t) {
 
 // Has the ray go on in the first piece that it is in at t. Returns false if there is none.
 bool PieceMarcher::enter_solid(RayState& state, double t) {
-  pieces_.boxes.begin(state.ray.origin + t * state.ray.direction, state.ray.direction, state.ray.length - t, around_);
+  const glm::dvec3 place = state.ray.origin + t * state.ray.direction;
+  pieces_.boxes.begin(place, state.ray.direction, state.ray.length - t, around_);
   for (BoxedPiece box; pieces_.boxes.next(around_, 0, box);) {
     const auto piece = static_cast<std::uint32_t>(box.piece);
-    const glm::dvec3 place = state.ray.origin + t * state.ray.direction;
     const double level = kLevelRoundings * pieces_.fields[piece].rounding(place), value = value_at(state, piece, t);
     if (!(value <= level)) continue;
     // A ray that grazes a shared face is at the rounding level of 0 for a while.
@@ -233,7 +225,6 @@ void PieceMarcher::end_piece(const RayHit& found) {
   } else if (found.status != RayHit::Status::Miss && state.miss != RayHit::Status::Invalid) {
     state.miss = found.status;
   }
-  if (state.piece == kWhole) return end_ray(found.id);
   if (state.side < 0 && found.status != RayHit::Status::Hit) return end_ray(found.id);
   ready_.push_back(found.id);
 }
@@ -269,7 +260,6 @@ MarchCounters PieceMarcher::counters() const {
     all.lanes += of.lanes;
     if (of.invalid_at) all.note_invalid(*of.invalid_at);
   };
-  add(whole_);
   add(searches_);
   for (const auto& stream : own_) {
     if (stream) add(*stream);
@@ -295,7 +285,6 @@ bool PieceMarcher::advance_parts(std::size_t few) {
     if (streams_[i] && streams_[i]->live() >= few) advance_stream(i, few), advanced = true;
     if (own_[i] && has_rays(*own_[i])) advance(*own_[i]), advanced = true;
   }
-  if (has_rays(whole_)) advance(whole_), advanced = true;
   if (has_rays(searches_)) advance(searches_), advanced = true;
   return advanced;
 }

@@ -39,13 +39,12 @@ class PieceMarcher final : public Marcher {
     std::uint32_t piece;
     std::int8_t side;
   };
-  static constexpr std::int32_t kWhole = -1;  // in the place of a piece: the whole field
   // A ray under way. Its number is the id of its part within a piece.
   struct RayState {
     ClippedRay ray;
     float slope;
     std::uint32_t leaves;  // piece whose surface the ray leaves outwards, or kNoPiece
-    std::int32_t piece;    // that the ray is in, or kWhole
+    std::int32_t piece;    // that the ray is in
     double from, to;       // the part of the ray there
     PieceBoxes::Visit visit;
     std::vector<Root> roots;  // in the order in which they were found; of a solid only the last
@@ -86,7 +85,6 @@ class PieceMarcher final : public Marcher {
   const Pieces& pieces_;
   const Marching marching_;
   const std::size_t register_lanes_;  // points per register
-  Stream<float> whole_;
   Searches searches_;
   std::vector<std::unique_ptr<PieceStream>> streams_;       // [template]
   std::vector<std::unique_ptr<Stream<float>>> own_;         // [template] of a piece with a field of its own

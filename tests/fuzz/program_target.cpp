@@ -47,11 +47,11 @@ void run_bare_program(Bytes input) {
   vm::ByteReader reader(input);
   vm::Limits machine = compiler::largest_machine();
   machine.words = 1 << 20;  // rows ask for any number in a few bytes
-  const auto read = vm::read_program(reader, machine);
+  const auto read = vm::ProgramDecoder().read(reader, machine);
   const auto* program = std::get_if<vm::VerifiedProgram>(&read);
   if (program == nullptr) return promise(!std::get<vm::VerifyError>(read).reason.empty(), "there is a reason");
   vm::ByteWriter writer;
-  vm::write_program(writer, *program);
+  vm::ProgramEncoder().write(writer, *program);
   const auto size = static_cast<std::ptrdiff_t>(reader.offset());
   promise(writer.bytes() == Input(input.begin(), input.begin() + size), "what is written is what was read");
   test::Random random(input.size());
@@ -80,7 +80,7 @@ std::vector<Input> seeds_of_program() {
   for (const vm::VerifiedProgram& program : seed_programs()) {
     vm::ByteWriter out;
     out.u8(0);
-    vm::write_program(out, program);
+    vm::ProgramEncoder().write(out, program);
     seeds.push_back(out.take());
   }
   for (const compiler::CompiledScene& scene : seed_scenes()) {

@@ -132,6 +132,28 @@ void add_rows(std::vector<EmittedProgram>& programs, Random& random) {
   }
 }
 
+// Adds loops that once had other surfaces: over a local with a surface, and with a tag for what the row before has
+// left without one.
+void add_odd_rows(std::vector<EmittedProgram>& programs) {
+  vm::Program local, lost;
+  local.locals = 1;
+  local.append(Opcode::Sphere, 0, {1}, {});
+  local.append(Opcode::Tag, 3, {}, {});
+  local.append(Opcode::Tee, 0, {}, {});
+  local.append(Opcode::Box, 0, {1, 0.5, 0.25}, {});
+  lost.append(Opcode::Box, 0, {1, 0.5, 0.25}, {});
+  lost.append(Opcode::Tag, 1, {}, {});
+  for (int i = 0; i < 16; ++i) {
+    local.append(Opcode::SmoothMin, vm::operand_of(vm::Sources{Source::Stack, Source::Local, 0}), {0.01 * (i + 1), 2},
+                 {});
+    lost.append(Opcode::Tag, 5, {}, {});
+    lost.append(Opcode::Sphere, vm::kFusedMin, {0.1 + 0.03 * i}, {});
+  }
+  local.append(Opcode::Min, 0, {}, {});
+  programs.push_back(named("rows_local", std::move(local)));
+  programs.push_back(named("rows_lost", std::move(lost)));
+}
+
 // Adds programs with nested points, locals and tags; loops with immediates that keep the loops running; and a scene
 // far from the origin.
 void add_others(std::vector<EmittedProgram>& programs) {
@@ -188,6 +210,7 @@ std::vector<EmittedProgram> emitted_programs() {
   add_operands(programs, random);
   add_choices(programs, random);
   add_rows(programs, random);
+  add_odd_rows(programs);
   add_others(programs);
   add_random_scenes(programs);
   return programs;

@@ -256,12 +256,6 @@ std::variant<VerifiedProgram, VerifyError> ProgramDecoder::read(ByteReader& in, 
   return verified;
 }
 
-void write_program(ByteWriter& out, const VerifiedProgram& program) { ProgramEncoder().write(out, program); }
-
-std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Limits& limits) {
-  return ProgramDecoder().read(in, limits);
-}
-
 void write_debug(ByteWriter& out, const DebugTable& table) {
   out.text(table.source_name);
   std::vector<const DebugEntry*> different;

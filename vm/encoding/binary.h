@@ -66,10 +66,6 @@ class ProgramDecoder {
   ProgramEncoder encoder_;
 };
 
-// The same for a program alone.
-void write_program(ByteWriter& out, const VerifiedProgram& program);
-[[nodiscard]] std::variant<VerifiedProgram, VerifyError> read_program(ByteReader& in, const Limits& limits = {});
-
 // Source locations of the instructions, and the name of their source.
 struct DebugTable {
   std::string source_name;

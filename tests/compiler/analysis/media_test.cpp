@@ -1,4 +1,6 @@
 // Interiors of transparent bodies, as the compiler finds them.
+#include <fmt/format.h>
+
 #include <string>
 
 #include "tests/support/catch.h"
@@ -66,6 +68,38 @@ TEST_CASE("media: bodies are told apart within moved groups", "[analysis]") {
   CHECK(value(scene.media[0], {3, 0.5, 0}) < 0);
   CHECK(value(scene.media[0], {3, 0, 0}) > 0);
   CHECK(value(scene.media[0], {0, 0.5, 0}) > 0);
+}
+
+// Each of ten thousand balls in one union was cut by all that the union's box meets.
+TEST_CASE("media: a body of a union is cut by what meets its own box", "[analysis]") {
+  std::string glass, stones;
+  for (int i = 0; i < 20; ++i) {
+    glass += fmt::format(R"({}{{"type": "sphere", "radius": 1, "translate": [{}, 0, 0]}})", i > 0 ? ", " : "", 3 * i);
+    stones +=
+        fmt::format(R"(, {{"type": "sphere", "radius": 1, "translate": [{}, 5, 0], "material": "table"}})", 3 * i);
+  }
+  const CompiledScene scene =
+      with(kGlassAndWater, R"({"type": "union", "material": "glass", "of": [)" + glass + "]}" + stones +
+                               R"(, {"type": "sphere", "radius": 0.5, "translate": [3, 0, 0], "material": "table"})");
+  REQUIRE(scene.media.size() == 1);
+  CHECK(scene.media[0].distance.instructions() < 30);
+  CHECK(value(scene.media[0], {3, 0, 0}) > 0);
+  CHECK(value(scene.media[0], {3, 0.7, 0}) < 0);
+  CHECK(value(scene.media[0], {57, 0, 0}) < 0);
+}
+
+// The cuts of n bodies, each by n others, took n^2 nodes.
+TEST_CASE("media: bodies that all overlap are cut together", "[analysis]") {
+  std::string bodies;
+  for (int i = 0; i < 200; ++i) {
+    bodies += fmt::format(R"({}{{"type": "sphere", "radius": 1, "translate": [{}, 0, 0], "material": "{}"}})",
+                          i > 0 ? ", " : "", 0.001 * i, i % 2 == 0 ? "glass" : "table");
+  }
+  const CompiledScene scene = with(kGlassAndWater, bodies);
+  REQUIRE(scene.media.size() == 1);
+  CHECK(scene.media[0].distance.instructions() < 1000);
+  CHECK(value(scene.media[0], {0, 0, 0}) > 0);
+  CHECK(value(scene.media[0], {-0.9995, 0, 0}) < 0);
 }
 
 // Regression: the part without a material of its own was taken for part of its neighbour.

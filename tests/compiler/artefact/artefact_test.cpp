@@ -305,6 +305,19 @@ TEST_CASE("a listing is refused at the line that is wrong", "[artefact]") {
   CHECK_THAT(refused("\"ball\"", "\"ba\\nll\""), Contains("a control character"));
 }
 
+// A limit on words refused files that the compiler had written under the same limits.
+TEST_CASE("a file of long instructions is within the limits of its compilation", "[artefact]") {
+  std::string points;
+  for (int i = 0; i < 1001; ++i) points += fmt::format("{}[{}, {}]", i > 0 ? ", " : "", i, i * i);
+  compiler::Limits limits;
+  limits.instructions = 50;
+  const CompiledScene scene = test::compiled_objects(
+      R"({"type": "extrude", "half_depth": 1, "of": {"type": "polygon", "points": [)" + points + "]}}");
+  REQUIRE(scene.distance.program().words.size() > 2000);
+  CHECK(std::holds_alternative<compiler::StoredScene>(
+      compiler::read_stored(compiler::write_file(scene), "test.fbc", limits)));
+}
+
 TEST_CASE("a program alone becomes a scene of one surface, of which nothing is proved", "[artefact]") {
   FileContents contents;
   const CompiledScene ball = reread("sphere 1\n", contents);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <variant>
 
 #include "tests/support/catch.h"
 #include "tests/support/compiled.h"
@@ -70,6 +71,19 @@ TEST_CASE("bodies that repeat are a loop over rows of numbers", "[emit]") {
 )"));
   CHECK(lines_of(compiler::emit_cpp(scene, "many")) <
         lines_of(compiler::emit_cpp(compiled_objects(kTwoShapes), "two")) + 20);
+}
+
+// A loop took its value from an empty stack.
+TEST_CASE("a body that repeats before the first value is no loop", "[emit]") {
+  vm::Program program;
+  for (int i = 0; i < 16; ++i) {
+    program.append(vm::Opcode::Translate, 0, {0.1 * i, 0, 0}, {});
+    program.append(vm::Opcode::Drop, 0, {}, {});
+  }
+  program.append(vm::Opcode::Sphere, 0, {0.5}, {});
+  compiler::CompiledScene scene = compiled_objects(kTwoShapes);
+  scene.distance = std::get<vm::VerifiedProgram>(vm::verify(program));
+  CHECK(tail(compiler::emit_glsl(scene, "late"), "  return") == "  return d1;\n}\n");
 }
 
 TEST_CASE("emitted GLSL tells surfaces apart", "[emit]") {

@@ -3,6 +3,7 @@
 #include "vm/encoding/binary.h"
 
 #include <cmath>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -17,13 +18,13 @@ namespace {
 
 std::vector<std::uint8_t> bytes_of(const vm::VerifiedProgram& program) {
   vm::ByteWriter out;
-  vm::write_program(out, program);
+  vm::ProgramEncoder().write(out, program);
   return out.take();
 }
 
 std::string reason_of(const std::vector<std::uint8_t>& bytes) {
   vm::ByteReader in(bytes);
-  const auto result = vm::read_program(in);
+  const auto result = vm::ProgramDecoder().read(in);
   const auto* error = std::get_if<vm::VerifyError>(&result);
   return error ? error->reason : "";
 }
@@ -38,10 +39,10 @@ TEST_CASE("random programs read back from their bytes", "[encoding][binary]") {
     Random random(static_cast<std::uint64_t>(seed));
     const vm::VerifiedProgram program = program_of(random, seed);
     vm::ByteWriter out;
-    vm::write_program(out, program);
+    vm::ProgramEncoder().write(out, program);
     vm::write_debug(out, {program.program().source_name, program.program().debug});
     vm::ByteReader in(out.bytes());
-    auto read = vm::read_program(in);
+    auto read = vm::ProgramDecoder().read(in);
     INFO("seed " << seed);
     REQUIRE(std::holds_alternative<vm::VerifiedProgram>(read));
     const auto& back = std::get<vm::VerifiedProgram>(read);
@@ -68,7 +69,7 @@ TEST_CASE("of a program's bytes every cut is refused, and every changed byte is 
       std::vector<std::uint8_t> changed = bytes;
       changed[at] ^= static_cast<std::uint8_t>(1 + random.below(255));
       vm::ByteReader in(changed);
-      const auto read = vm::read_program(in);
+      const auto read = vm::ProgramDecoder().read(in);
       if (const auto* program = std::get_if<vm::VerifiedProgram>(&read); program && in.left() == 0) {
         // An accepted program encodes to the same bytes, and the machine survives it.
         CHECK((bytes_of(*program) == changed));
@@ -135,6 +136,23 @@ TEST_CASE("what repeats in programs is written once", "[encoding][binary]") {
   CHECK(places.size() < 100);
   vm::ByteReader read(places.bytes());
   CHECK(vm::read_debug(read, inside_out).entries.size() == 1001);
+}
+
+// A name of a megabyte in each of a thousand rows took a gigabyte.
+TEST_CASE("a few bytes of debug entries make no large table", "[encoding][binary]") {
+  vm::Program program;
+  for (int i = 0; i < 1000; ++i) program.append(vm::Opcode::Sphere, i > 0 ? vm::kFusedMin : 0, {0.5}, {});
+  const auto balls = std::get<vm::VerifiedProgram>(vm::verify(program));
+  const auto reads = [&](std::size_t letters) {
+    vm::ByteWriter out;
+    out.text("scene");
+    out.u32(1), out.u32(3), out.u32(7), out.text(std::string(letters, 'n'));
+    out.u32(1), out.u32(1), out.u32(1000), out.u32(0);  // a block of one entry and a thousand rows
+    vm::ByteReader in(out.bytes());
+    return vm::read_debug(in, balls).entries.size() == 1000 && !in.failed();
+  };
+  CHECK(reads(1000));
+  CHECK_FALSE(reads(1'000'000));
 }
 
 // Compiled files record the version of the machine that their programs are for. If this test fails, some opcode
