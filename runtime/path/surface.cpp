@@ -14,7 +14,16 @@
 namespace fathom::runtime {
 namespace {
 
-void set_rows(std::span<const Hit> hits, SurfaceRows& rows) {
+// Some hits of a batch: those on one piece.
+struct HitGroup {
+  const Hit* all;
+  std::span<const std::uint16_t> numbers;
+
+  std::size_t size() const { return numbers.size(); }
+  const Hit& operator[](std::size_t i) const { return all[numbers[i]]; }
+};
+
+void set_rows(const HitGroup& hits, SurfaceRows& rows) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const Hit& hit = hits[i];
     float size = 1;
@@ -36,7 +45,7 @@ float least_offset(const Field& field, float size) {
 
 // Replaces the surfaces at hits whose coordinates are so coarse that float gives a coarse normal, perhaps of another
 // surface.
-void evaluate_coarse_hits(const Field& field, std::span<const Hit> hits, SurfaceRows& rows,
+void evaluate_coarse_hits(const Field& field, const HitGroup& hits, SurfaceRows& rows,
                           std::span<std::uint32_t> surface, vm::Workspace& workspace) {
   const float most = kMaxOffset * field.band;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -60,7 +69,7 @@ void set_inverse_slopes(const Field& field, std::size_t count, SurfaceRows& rows
 
 // Replaces the gradients of hits at which the field jumps by the normals of the surface. A field with a bound on its
 // slope around a hit does not jump there.
-void mend_jumps(const Field& field, std::span<const Hit> hits, SurfaceRows& rows, RealScratch& scratch) {
+void mend_jumps(const Field& field, const HitGroup& hits, SurfaceRows& rows, RealScratch& scratch) {
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (rows.inverse_slope[i] > 0) continue;
     const glm::dvec3 gradient(rows.gradient[0][i], rows.gradient[1][i], rows.gradient[2][i]);
@@ -78,8 +87,8 @@ const Field& field_of(const Field& whole, std::uint32_t piece) {
   return whole.pieces && piece != kNoPiece ? whole.pieces->fields[piece] : whole;
 }
 
-// The same as find_surfaces(), of hits that all have this field.
-void find_surfaces_of(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
+// The same as find_surfaces(), of hits that all have this field. `points`: of the whole batch.
+void find_surfaces_of(const compiler::CompiledScene& scene, const Field& field, const HitGroup& hits,
                       std::span<SurfacePoint> points, vm::Workspace& workspace) {
   SurfaceRows rows;
   alignas(64) std::array<float, kSurfaceBatch> distance;
@@ -98,7 +107,7 @@ void find_surfaces_of(const compiler::CompiledScene& scene, const Field& field, 
   set_surface_geometry(field, hits.size(), rows);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     CHECK(surface[i] < scene.surfaces.size(), "a tag of the surface program has no surface");
-    SurfacePoint& point = points[i];
+    SurfacePoint& point = points[hits.numbers[i]];
     for (int axis = 0; axis < 3; ++axis) point.normal[axis] = rows.normal[axis][i];
     point.surface = surface[i];
     point.material = scene.surfaces[surface[i]].material;
@@ -108,30 +117,37 @@ void find_surfaces_of(const compiler::CompiledScene& scene, const Field& field, 
   }
 }
 
+// Sorts the numbers of hits by piece, a byte of it at a time, from the lowest (LSD radix sort).
+void sort_by_piece(std::span<const Hit> hits, std::span<std::uint16_t> numbers) {
+  std::uint32_t used = 0;
+  for (const Hit& hit : hits) used |= hit.piece + 1;  // kNoPiece becomes 0
+  std::array<std::uint16_t, kSurfaceBatch> sorted;
+  for (std::uint32_t shift = 0; shift < 32 && used >> shift != 0; shift += 8) {
+    const auto digit = [&](std::uint16_t i) { return ((hits[i].piece + 1) >> shift) & 255; };
+    std::array<std::uint16_t, 257> place{};
+    for (const std::uint16_t i : numbers) ++place[digit(i) + 1];
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    for (const std::uint16_t i : numbers) sorted[place[digit(i)]++] = i;
+    std::copy_n(sorted.begin(), numbers.size(), numbers.begin());
+  }
+}
+
 }  // namespace
 
 void find_surfaces(const compiler::CompiledScene& scene, const Field& field, std::span<const Hit> hits,
                    std::span<SurfacePoint> points, vm::Workspace& workspace) {
   CHECK(hits.size() <= kSurfaceBatch && points.size() >= hits.size(), "a batch of hits is too large");
-  if (!field.pieces) return find_surfaces_of(scene, field, hits, points, workspace);
   std::array<std::uint16_t, kSurfaceBatch> order;
-  const auto end = order.begin() + std::ssize(hits);
-  std::iota(order.begin(), end, std::uint16_t{0});
-  std::sort(order.begin(), end, [&](std::uint16_t a, std::uint16_t b) {
-    return std::pair(hits[a].piece, a) < std::pair(hits[b].piece, b);
-  });
-  std::array<Hit, kSurfaceBatch> same;
-  std::array<SurfacePoint, kSurfaceBatch> found;
-  for (auto first = order.begin(), last = first; first != end; first = last) {
-    const std::uint32_t piece = hits[*first].piece;
-    std::size_t count = 0;
-    for (; last != end && hits[*last].piece == piece; ++last) same[count++] = hits[*last];
-    find_surfaces_of(scene, field_of(field, piece), std::span(same).first(count), found, workspace);
-    for (std::size_t i = 0; i < count; ++i) {
-      SurfacePoint& point = points[first[static_cast<std::ptrdiff_t>(i)]];
-      point = found[i];
-      if (piece != kNoPiece) point.clear = 0;  // other pieces may be nearer
-    }
+  const std::span<std::uint16_t> numbers = std::span(order).first(hits.size());
+  std::iota(numbers.begin(), numbers.end(), std::uint16_t{0});
+  if (field.pieces) sort_by_piece(hits, numbers);
+  for (std::size_t begin = 0, end = 0; begin < hits.size(); begin = end) {
+    const std::uint32_t piece = hits[numbers[begin]].piece;
+    while (end < hits.size() && hits[numbers[end]].piece == piece) ++end;
+    const HitGroup same{hits.data(), numbers.subspan(begin, end - begin)};
+    find_surfaces_of(scene, field_of(field, piece), same, points, workspace);
+    if (piece == kNoPiece) continue;
+    for (const std::uint16_t i : same.numbers) points[i].clear = 0;  // other pieces may be nearer
   }
 }
 
