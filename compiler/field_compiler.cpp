@@ -13,6 +13,7 @@
 #include "compiler/graph/rewrite.h"
 #include "compiler/lower/fuse.h"
 #include "compiler/lower/lower.h"
+#include "compiler/passes/closed_forms.h"
 #include "compiler/passes/passes.h"
 #include "compiler/passes/split.h"
 #include "compiler/shapes/bounds.h"
@@ -134,7 +135,7 @@ std::optional<std::vector<CompiledPiece>> FieldCompiler::compile_pieces(const Sc
     auto field = compile_whole(distance, surface);
     if (!field) return std::nullopt;
     pieces.push_back(
-        {*std::move(field), is_convex(distance.graph, distance.root), closed_form(distance.graph, distance.root)});
+        {*std::move(field), is_convex(distance.graph, distance.root), closed_forms(distance.graph, distance.root)});
   }
   return pieces;
 }

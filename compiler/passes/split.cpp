@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/matrix.hpp>
 #include <span>
 
-#include "compiler/geometry/affine.h"
 #include "compiler/geometry/box_tree.h"
 #include "compiler/graph/rewrite.h"
+#include "compiler/passes/closed_forms.h"
 #include "compiler/passes/signs.h"
 #include "compiler/shapes/bounds.h"
 #include "compiler/shapes/node_table.h"
@@ -15,9 +14,11 @@
 namespace fathom::compiler {
 namespace {
 
-// Cost of a piece in a ray's way besides its program, multiply-adds of each evaluation (bench/pieces.cpp): the box,
-// the start, the step of the marcher, the end.
-constexpr double kStepCost = 300;
+// Costs besides a piece's program, in multiply-adds of each evaluation (bench/pieces.cpp): of a step of the marcher;
+// of a ray's start and end in a piece; of a look at a few pieces, and of each form there; of the tree of many.
+constexpr double kStepCost = 300, kStartCost = 380, kScanCost = 220, kFormCost = 18, kTreeCost = 300;
+// Maximum number of pieces that rays look at without a tree (runtime/march/closed_form.h).
+constexpr std::size_t kFewPieces = 32;
 
 // Half of the surface of a box.
 double half_area(const Box& box) {
@@ -47,7 +48,7 @@ class Splitting {
       if (reached[id]) visit(id);
     }
     std::vector<NodeId> pieces = std::move(arms_[scene_.root]);
-    if (!is_worth(pieces, kStepCost)) pieces = {whole_[scene_.root]};  // rays among pieces pay for the tree of boxes
+    if (!is_worth(pieces, true)) pieces = {whole_[scene_.root]};
     return {std::move(out_), std::move(pieces)};
   }
 
@@ -67,7 +68,7 @@ class Splitting {
       case Kind::Union: {
         std::vector<NodeId> arms;
         for (const NodeId operand : operands) arms.insert(arms.end(), arms_[operand].begin(), arms_[operand].end());
-        return is_worth(arms, 0) ? arms : std::vector<NodeId>{};
+        return is_worth(arms, false) ? arms : std::vector<NodeId>{};
       }
       case Kind::Transform:
       case Kind::Scaled:
@@ -127,21 +128,24 @@ class Splitting {
     return kept;
   }
 
-  // True if rays are faster among the arms than in their union, at a `cost` besides the arms'. Arms with a proved
-  // bound leave those without: their rays keep the proof.
-  bool is_worth(std::span<const NodeId> arms, double cost) const {
+  // True if rays are faster among the arms than in their union. `all`: the arms are the whole scene. Arms with a
+  // proved bound leave those without: their rays keep the proof.
+  bool is_worth(std::span<const NodeId> arms, bool all) const {
     if (arms.size() < 2) return true;
     const auto rough = std::ranges::count_if(arms, [this](NodeId arm) { return is_rough(arm); });
     if (rough > 0 && rough < std::ssize(arms)) return true;
-    Box all;
+    Box around;
     for (const NodeId arm : arms) {
-      if (facts_[arm].box.finite()) all = unite(all, facts_[arm].box);
+      if (facts_[arm].box.finite()) around = unite(around, facts_[arm].box);
     }
-    double apart = cost, together = kStepCost;
+    const bool few = arms.size() <= kFewPieces;
+    double apart = !all ? 0 : few ? kScanCost : kTreeCost, together = kStepCost;
     for (const NodeId arm : arms) {
       const Box& box = facts_[arm].box;
-      const double share = box.finite() ? half_area(box) / std::max(half_area(all), 1e-300) : 1;
-      apart += std::min(1.0, share) * (cost_[arm] + kStepCost);
+      const double share = box.finite() ? half_area(box) / std::max(half_area(around), 1e-300) : 1;
+      const std::size_t forms = few ? closed_forms(out_, arm).size() : 0;
+      const double marched = cost_[arm] + kStepCost + (all && few ? kStartCost : 0);
+      apart += forms > 0 ? kFormCost * static_cast<double>(forms) : std::min(1.0, share) * marched;
       together += cost_[arm];
     }
     return apart < together;
@@ -202,37 +206,6 @@ bool is_convex(const Graph& graph, NodeId id) {
       return code.after.size() == 1 && code.points.size() == 1 && code.points[0].empty() &&
              has(vm::info(code.after[0].opcode).facts, vm::Fact::Convex);
     }
-  }
-}
-
-ClosedForm closed_form(const Graph& graph, NodeId id) {
-  using Shape = ClosedForm::Shape;
-  const auto params = graph.params(id);
-  switch (graph.kind(id)) {
-    case Kind::Paint:
-    case Kind::Scaled:
-      return closed_form(graph, graph.children(id)[0]);
-    case Kind::Transform: {
-      ClosedForm form = closed_form(graph, graph.children(id)[0]);
-      const Affine map = Affine::from_params(params);
-      const glm::dmat3 linear = glm::transpose(glm::dmat3(map.rows[0], map.rows[1], map.rows[2]));
-      form.translation += form.linear * map.translation;
-      form.linear = form.linear * linear;
-      return form;
-    }
-    case Kind::Sphere:
-      return {Shape::Ball, glm::dmat3(1.0), glm::dvec3(0.0), {params[0]}};
-    case Kind::Box:
-      return {Shape::Box, glm::dmat3(1.0), glm::dvec3(0.0), {params[0], params[1], params[2]}};
-    case Kind::Cylinder:
-      return {Shape::Cylinder, glm::dmat3(1.0), glm::dvec3(0.0), {params[0], params[1]}};
-    case Kind::Plane: {
-      const Code code = spec(Kind::Plane).code(params);
-      const std::vector<double>& k = code.after[0].immediates;
-      return {Shape::HalfSpace, glm::dmat3(1.0), glm::dvec3(0.0), {k[0], k[1], k[2], k[3]}};
-    }
-    default:
-      return {};
   }
 }
 

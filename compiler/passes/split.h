@@ -29,7 +29,4 @@ Pieces split(const Scene& scene);
 // True if the node's value is a convex function of the point, as far as the node table shows.
 bool is_convex(const Graph& graph, NodeId id);
 
-// Returns the formula of a node that is a moved ball, box, cylinder or half-space.
-ClosedForm closed_form(const Graph& graph, NodeId id);
-
 }  // namespace fathom::compiler

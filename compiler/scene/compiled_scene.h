@@ -156,18 +156,25 @@ struct CompiledField {
 // A solid that a ray enters at a place that a formula gives: the points q = linear * p + translation of a shape
 // around the origin.
 struct ClosedForm {
-  enum class Shape : std::uint8_t { None, Ball, Box, Cylinder, HalfSpace };
-  Shape shape = Shape::None;
+  enum class Shape : std::uint8_t { Ball, Box, Cylinder, Capsule, HalfSpace, RoundBox, RoundedCylinder };
+  Shape shape;
+  bool cut = false;  // the solid is cut from the others
   glm::dmat3 linear{1.0};
   glm::dvec3 translation{0.0};
-  // Ball: radius. Box: half sizes. Cylinder about y: radius, half height. HalfSpace: unit normal, offset along it.
+  // Ball: radius. Box: half sizes. Cylinder and Capsule, about y: radius, half height. HalfSpace: unit normal, offset
+  // along it. RoundBox and RoundedCylinder: as Box and Cylinder, then the radius of the edges, which are part of
+  // them.
   std::array<double, 4> size{};
 };
+
+// Maximum number of a piece's forms: with more, marching is faster.
+inline constexpr std::size_t kMostForms = 8;
 
 // A part of the scene, which is the union of its pieces (compiler/passes/split.h).
 struct CompiledPiece : CompiledField {
   bool convex;  // the distance is a convex function
-  ClosedForm form;
+  // Solids whose intersection is the piece, and what is cut from it. Empty: there is no formula.
+  std::vector<ClosedForm> forms;
 };
 
 // A field that may be divided.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +19,14 @@ constexpr std::size_t kMostTemplates = 512;
 // True if lanes can hold the constants of pieces of this field: its program is run as it is.
 bool runs_program(const Field& field) { return !field.cells && !field.regions && !field.far_levels.used(); }
 
+// Returns a letter for each form.
+std::string shapes_of(const compiler::CompiledPiece& piece) {
+  std::string shapes;
+  for (const compiler::ClosedForm& form : piece.forms)
+    shapes += static_cast<char>((form.cut ? 'A' : 'a') + static_cast<int>(form.shape));
+  return shapes;
+}
+
 }  // namespace
 
 void PieceTemplate::evaluate(vm::Points points, std::size_t count, const float* constants, float* out,
@@ -32,7 +41,7 @@ void add_pieces(Field& field, const compiler::SplitField& split, double extent, 
   if (split.pieces.size() < 2) return;
   constexpr double kEvaluations = 1e7;  // enough for machine code to repay
   auto pieces = std::make_shared<Pieces>();
-  using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, double, int, bool>;
+  using Key = std::tuple<std::vector<std::uint32_t>, std::vector<double>, std::string, double, int, bool>;
   std::map<Key, std::uint32_t> known;
   std::vector<compiler::Box> boxes;
   RegionOptions left = regions ? *regions : RegionOptions{};
@@ -44,10 +53,12 @@ void add_pieces(Field& field, const compiler::SplitField& split, double extent, 
       if (own.regions) left.memory -= std::min(left.memory, own.regions->summary().bytes);
     }
     boxes.push_back(own.bound);
-    pieces->forms.push_back(piece.form);
+    pieces->first_form.push_back(static_cast<std::uint32_t>(pieces->forms.size()));
+    pieces->forms.insert(pieces->forms.end(), piece.forms.begin(), piece.forms.end());
     vm::ProgramTemplate code = vm::template_of(piece.distance);
     const bool alike = runs_program(own);
-    const Key key{code.words, code.doubles, own.lipschitz, magnitude_of(piece.cancellation), piece.convex};
+    const Key key{code.words,  code.doubles, shapes_of(piece), own.lipschitz, magnitude_of(piece.cancellation),
+                  piece.convex};
     const auto next = static_cast<std::uint32_t>(pieces->templates.size());
     const auto [found, is_new] = alike ? known.try_emplace(key, next) : std::pair(known.end(), true);
     if (is_new) {
@@ -64,6 +75,7 @@ void add_pieces(Field& field, const compiler::SplitField& split, double extent, 
     pieces->fields.push_back(std::move(own));
   }
   if (pieces->templates.size() > kMostTemplates) return;
+  pieces->first_form.push_back(static_cast<std::uint32_t>(pieces->forms.size()));
   pieces->boxes = PieceBoxes(boxes);
   pieces->rows.resize(split.pieces.size());
   for (std::size_t i = 0; i < split.pieces.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/geometry/box.h"
@@ -35,9 +36,15 @@ struct Pieces {
   std::vector<Field> fields;                // [piece]
   PieceBoxes boxes;                         // around the surfaces, with the margin of Field::bound
   std::vector<std::uint32_t> template_of;   // [piece] index into templates
-  std::vector<compiler::ClosedForm> forms;  // [piece]
+  std::vector<compiler::ClosedForm> forms;  // of all pieces
+  std::vector<std::uint32_t> first_form;    // [piece] index into forms, and the end after the last piece
   std::vector<std::vector<float>> rows;     // [piece] constants of its template; empty unless per_lane
   std::vector<PieceTemplate> templates;
+
+  // Returns the forms of a piece, those of one template alike in number and shape.
+  std::span<const compiler::ClosedForm> forms_of(std::size_t piece) const {
+    return std::span(forms).subspan(first_form[piece], first_form[piece + 1] - first_form[piece]);
+  }
 };
 
 // Gives the pieces of `split` to its field: rays then meet the pieces, not the whole. A field of one piece, or of

@@ -31,7 +31,7 @@ struct RayBlock {
   float slope[kCapacity];
   std::int8_t side[kCapacity];
   std::uint32_t id[kCapacity];
-  std::uint32_t leaves[kCapacity];
+  std::uint32_t leaves[kPadded];
 
   void push(std::uint32_t ray_id, const Ray& ray) {
     const std::size_t i = count++;
@@ -50,6 +50,17 @@ struct RayBlock {
   void push_from(std::uint32_t ray_id, glm::dvec3 from, glm::dvec3 along, double begin, double end, int known_side) {
     push(ray_id, {from, along, end, known_side});
     entry[count - 1] = begin;
+  }
+  glm::dvec3 origin_of(std::size_t i) const { return {origin[0][i], origin[1][i], origin[2][i]}; }
+  glm::dvec3 direction_of(std::size_t i) const { return {direction[0][i], direction[1][i], direction[2][i]}; }
+  // Replaces ray `to` by a later one.
+  void move(std::size_t from, std::size_t to) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis][to] = origin[axis][from];
+      direction[axis][to] = direction[axis][from];
+    }
+    length[to] = length[from], entry[to] = entry[from], result[to] = result[from];
+    slope[to] = slope[from], side[to] = side[from], id[to] = id[from], leaves[to] = leaves[from];
   }
   // Only after clipping.
   ClipResult clip_result(std::size_t i) const { return static_cast<ClipResult>(result[i]); }

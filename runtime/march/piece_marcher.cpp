@@ -1,6 +1,7 @@
 #include "runtime/march/piece_marcher.h"
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 
 namespace fathom::runtime {
 namespace {
@@ -28,43 +29,109 @@ PieceMarcher::PieceMarcher(const Field& field, const Marching& marching)
       proposals_(pieces_.templates.size()),
       states_(kMaxStates) {
   for (std::uint32_t i = kMaxStates; i-- > 0;) free_.push_back(i);
+  if (pieces_.fields.size() <= PieceScan::kMostPieces) scan_ = std::make_unique<PieceScan>(pieces_);
+}
+
+// Scans the rays that have come since the last scan, and ends those that have no pieces left to march through.
+void PieceMarcher::scan(RayBlock& rays) {
+  for (std::size_t i = scanned_; i < rays.count; ++i) {
+    if (rays.side[i] == 0 && rays.clip_result(i) == ClipResult::Within)
+      rays.side[i] = static_cast<std::int8_t>(side_at(rays.origin_of(i)));
+  }
+  const std::size_t points = scan_->scan(rays, scanned_, workspace_);
+  counters_.evaluations += points;
+  counters_.lanes += (points + register_lanes_ - 1) / register_lanes_ * register_lanes_;
+  std::size_t kept = scanned_;
+  for (std::size_t i = scanned_; i < rays.count; ++i) {
+    const PieceScan::Found& found = scan_->found(i);
+    if (!enters(rays, i)) continue;
+    if (found.others != 0 || rays.side[i] < 0) {
+      rays.move(i, kept);
+      scan_->move(i, kept++);
+    } else {
+      const bool hit = found.piece != kNoPiece;
+      report(rays.id[i], hit ? RayHit::Status::Hit : RayHit::Status::Miss, std::int8_t{1}, found.evaluations, 0u,
+             found.width, hit ? rays.entry[i] + found.t : 0, found.instructions, found.piece);
+    }
+  }
+  rays.count = kept;
 }
 
 void PieceMarcher::begin(RayBlock& rays) {
+  if (scan_) scan(rays);
   while (rays.count > 0 && !free_.empty()) {
     const std::size_t i = --rays.count;
-    if (!enters(rays, i)) continue;
-    ++live_;
-    const std::uint32_t number = free_.back();
-    free_.pop_back();
-    RayState& state = states_[number];
-    set_clipped_ray(state.ray, rays, i);
-    state.slope = rays.slope[i];
-    state.leaves = rays.leaves[i];
-    state.roots.clear();
-    state.reach = state.ray.length;
-    state.miss = RayHit::Status::Miss;
-    state.exact = false;
-    state.evaluations = state.certified = 0;
-    state.instructions = 0;
-    state.side = static_cast<std::int8_t>(rays.side[i] == 0 ? side_at(state.ray.origin) : rays.side[i]);
-    if (state.side > 0) {
-      pieces_.boxes.begin(state.ray.origin, state.ray.direction, state.ray.length, state.visit);
-      ready_.push_back(number);
-    } else if (enter_solid(state, 0)) {
-      start(number);
-    } else {  // it has left the solid where it begins
-      state.roots.push_back({0, 0, kNoPiece, -1});
-      end_ray(number);
-    }
+    if (scan_ || enters(rays, i)) begin_ray(rays, i);
+  }
+  scanned_ = rays.count;
+}
+
+void PieceMarcher::begin_ray(const RayBlock& rays, std::size_t i) {
+  ++live_;
+  const std::uint32_t number = free_.back();
+  free_.pop_back();
+  RayState& state = states_[number];
+  set_clipped_ray(state.ray, rays, i);
+  state.slope = rays.slope[i];
+  state.leaves = rays.leaves[i];
+  state.roots.clear();
+  state.reach = state.ray.length;
+  state.miss = RayHit::Status::Miss;
+  state.exact = false;
+  state.evaluations = state.certified = 0;
+  state.instructions = 0;
+  state.side = static_cast<std::int8_t>(rays.side[i] == 0 ? side_at(state.ray.origin) : rays.side[i]);
+  if (state.side > 0) {
+    begin_outside(number, i);
+  } else if (enter_solid(state, 0)) {
+    start(number);
+  } else {  // it has left the solid where it begins
+    state.roots.push_back({0, 0, kNoPiece, -1});
+    end_ray(number);
   }
 }
 
-// Returns -1 if a place lies within a piece, else 1. Rays of one place come together: those of a pinhole.
+void PieceMarcher::begin_outside(std::uint32_t number, std::size_t i) {
+  RayState& state = states_[number];
+  ready_.push_back(number);
+  if (!scan_) return pieces_.boxes.begin(state.ray.origin, state.ray.direction, state.ray.length, state.visit);
+  const PieceScan::Found& found = scan_->found(i);
+  scan_->list(found.others, state.ray.origin, state.ray.direction, state.ray.length, state.visit);
+  state.evaluations = found.evaluations;
+  state.instructions = found.instructions;
+  if (found.piece != kNoPiece) add_root(state, found.t, found.width, found.piece);
+}
+
+void PieceMarcher::add_root(RayState& state, double t, float width, std::uint32_t piece) {
+  state.roots.push_back({t, width, piece, state.side});
+  if (state.side > 0) state.reach = std::min(state.reach, t + static_cast<double>(width));
+}
+
+// Returns -1 if a place lies within a piece, else 1. Rays of one camera begin at one place, or near it on a lens.
 int PieceMarcher::side_at(glm::dvec3 place) {
   if (place == place_) return side_;
+  if (glm::distance(place, clear_place_) < clear_) return 1;
   place_ = place;
-  return side_ = find_solid(field_, place, real_scratch_) ? -1 : 1;
+  side_ = find_solid(field_, place, real_scratch_) ? -1 : 1;
+  if (clear_ < 0) {
+    clear_place_ = place;
+    clear_ = side_ > 0 ? clear_around(place) : 0;
+  }
+  return side_;
+}
+
+// Returns the length around a place outside the pieces within which there is no piece, or less.
+double PieceMarcher::clear_around(glm::dvec3 place) {
+  double clear = std::numeric_limits<double>::infinity();
+  std::uint64_t instructions = 0;
+  for (const Field& piece : pieces_.fields) {
+    const double outside = glm::length(glm::max(glm::max(piece.bound.lo - place, place - piece.bound.hi), 0.0));
+    if (outside >= clear) continue;
+    const bool bounded = !piece.may_jump() && !piece.cells;
+    const double value = outside > 0 || !bounded ? 0 : piece.evaluate(place, real_scratch_, instructions);
+    clear = std::max(outside, (value - piece.rounding(place)) / piece.lipschitz);
+  }
+  return std::max(0.0, clear);
 }
 
 // Has the ray enter the next box that it has to, or ends it.
@@ -78,10 +145,10 @@ void PieceMarcher::begin_next_piece(std::uint32_t number) {
     const std::uint32_t shared = pieces_.template_of[piece];
     // A ray that leaves a convex solid does not meet it again.
     if (piece == state.leaves && pieces_.templates[shared].convex) continue;
-    if (pieces_.forms[piece].shape == compiler::ClosedForm::Shape::None) return start(number);
+    if (pieces_.forms_of(piece).empty()) return start(number);
     if (!proposals_[shared]) proposals_[shared] = std::make_unique<PieceProposals>(pieces_, shared);
     if (proposals_[shared]->size() == PieceProposals::kCapacity) answer(shared);
-    return proposals_[shared]->add(number, state.piece, state.ray.origin, state.ray.direction, state.to, state.reach);
+    return proposals_[shared]->add(number, state.piece, state.ray.origin, state.ray.direction, state.reach);
   }
   end_ray(number);
 }
@@ -219,8 +286,7 @@ void PieceMarcher::end_piece(const RayHit& found) {
   state.side = found.side;
   if (found.status == RayHit::Status::Hit) {
     if (state.side < 0) state.roots.clear();  // of an exit before it was searched in double
-    state.roots.push_back({found.t, found.width, static_cast<std::uint32_t>(state.piece), found.side});
-    if (state.side > 0) state.reach = std::min(state.reach, found.t + static_cast<double>(found.width));
+    add_root(state, found.t, found.width, static_cast<std::uint32_t>(state.piece));
     state.exact = found.certified > 0;
   } else if (found.status != RayHit::Status::Miss && state.miss != RayHit::Status::Invalid) {
     state.miss = found.status;

@@ -21,6 +21,7 @@
 #include "runtime/march/marcher.h"
 #include "runtime/march/method.h"
 #include "runtime/march/piece_proposals.h"
+#include "runtime/march/piece_scan.h"
 #include "runtime/march/piece_stream.h"
 #include "runtime/march/stream.h"
 
@@ -68,7 +69,12 @@ class PieceMarcher final : public Marcher {
 
   void begin(RayBlock& rays) override;
   void step() override;
+  void scan(RayBlock& rays);
+  void begin_ray(const RayBlock& rays, std::size_t i);
+  void begin_outside(std::uint32_t number, std::size_t i);
+  static void add_root(RayState& state, double t, float width, std::uint32_t piece);
   int side_at(glm::dvec3 place);
+  double clear_around(glm::dvec3 place);
   void begin_next_piece(std::uint32_t number);
   bool enter_solid(RayState& state, double t);
   void leave_piece(std::uint32_t number);
@@ -89,13 +95,17 @@ class PieceMarcher final : public Marcher {
   std::vector<std::unique_ptr<PieceStream>> streams_;       // [template]
   std::vector<std::unique_ptr<Stream<float>>> own_;         // [template] of a piece with a field of its own
   std::vector<std::unique_ptr<PieceProposals>> proposals_;  // [template]
+  std::unique_ptr<PieceScan> scan_;                         // null in a scene of many pieces
+  std::size_t scanned_ = 0;  // number of waiting rays that were scanned, the first ones
   std::vector<RayState> states_;
   std::vector<std::uint32_t> free_, ready_;  // numbers of states: unused, and before their next piece
   std::vector<PieceProposals::Answer> answers_;
   std::vector<PieceStream::Ended> ended_;
   std::vector<RayHit> found_;
-  glm::dvec3 place_{std::numeric_limits<double>::quiet_NaN()};  // where side_at() was asked last
+  glm::dvec3 place_{std::numeric_limits<double>::quiet_NaN()};  // where side_at() looked last
   int side_ = 1;                                                // there
+  glm::dvec3 clear_place_{0.0};
+  double clear_ = -1;  // within this distance of the place is no solid; below 0: not known yet
   PieceBoxes::Visit around_;                                    // the boxes around a place
   std::vector<std::uint32_t> others_;                           // pieces around an exit
 };

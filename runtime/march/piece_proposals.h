@@ -13,6 +13,40 @@
 
 namespace fathom::runtime {
 
+// Roots of rays in the pieces of one template, each a bracket of which the field is to confirm that it is entered
+// there.
+class ProposedRoots {
+ public:
+  static constexpr std::size_t kCapacity = Entrances::kCapacity;
+
+  // `number`: of the template.
+  ProposedRoots(const Pieces& pieces, std::uint32_t number);
+
+  std::size_t size() const { return count_; }
+  // Adds the bracket from t - slack to t + slack on a ray. Requires size() < kCapacity.
+  void add(std::size_t piece, glm::dvec3 origin, glm::dvec3 direction, double t, double slack);
+  // Evaluates the field at the ends of all brackets. Returns the number of points. The next root is the first again.
+  std::size_t evaluate(vm::Workspace& workspace);
+  struct Root {
+    bool confirmed;
+    double t;
+    float width;  // of its bracket
+  };
+  // Returns root number i of those that were evaluated last.
+  Root root(std::size_t i) const;
+
+ private:
+  static constexpr std::size_t kPoints = 2 * kCapacity;  // the ends of a bracket are neighbours
+
+  const Pieces& pieces_;
+  const PieceTemplate& template_;
+  std::size_t count_ = 0;
+  std::vector<double> t_, slack_;  // [root]
+  alignas(64) float points_[3][kPoints] = {}, distance_[kPoints] = {};
+  std::vector<float> constants_;  // [constant][point]
+  RegionScratch scratch_;
+};
+
 class PieceProposals {
  public:
   static constexpr std::size_t kCapacity = Entrances::kCapacity;
@@ -21,8 +55,8 @@ class PieceProposals {
   PieceProposals(const Pieces& pieces, std::uint32_t number);
 
   std::size_t size() const { return rays_.count; }
-  // Adds a ray that may enter a piece before `exit`, unless that is beyond `reach`. Requires size() < kCapacity.
-  void add(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin, glm::dvec3 direction, double exit, double reach);
+  // Adds a ray that may enter a piece, unless beyond `reach`. Requires size() < kCapacity.
+  void add(std::uint32_t ray, std::int32_t piece, glm::dvec3 origin, glm::dvec3 direction, double reach);
 
   // March: the formula does not know, or the field does not confirm its root.
   enum class Result : std::uint8_t { Misses, Enters, March };
@@ -37,24 +71,18 @@ class PieceProposals {
   std::size_t answer(std::vector<Answer>& answers, vm::Workspace& workspace);
 
  private:
-  static constexpr std::size_t kPoints = 2 * kCapacity;  // the ends of a proposal are neighbours
-
   struct Pair {
     std::uint32_t ray;
     std::int32_t piece;
-    double exit, reach;
+    double reach;
   };
-  void add_points(std::size_t i);
-  Answer confirmed(std::size_t i, std::size_t first) const;
 
   const Pieces& pieces_;
   const PieceTemplate& template_;
   Entrances rays_;
-  std::vector<Pair> pairs_;            // [ray of rays_]
-  std::vector<std::size_t> entering_;  // rays with points, in their order
-  alignas(64) float points_[3][kPoints] = {}, distance_[kPoints] = {};
-  std::vector<float> constants_;  // [constant][point]
-  RegionScratch scratch_;
+  std::vector<Pair> pairs_;               // [ray of rays_]
+  std::vector<std::uint32_t> proposers_;  // rays of roots_
+  ProposedRoots roots_;
 };
 
 }  // namespace fathom::runtime
