@@ -2,6 +2,7 @@
 #include "runtime/field/piece_boxes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -20,11 +21,9 @@ using BoxLanes = hn::CappedTag<float, 16>;
 void open_node(const PieceBoxes::Node& node, PieceBoxes::Visit& visit) {
   constexpr std::size_t kWidth = PieceBoxes::kWidth;
   const BoxLanes d;
-  const hn::RebindToSigned<BoxLanes> s;
-  alignas(64) float entry[2 * kWidth], exit[2 * kWidth];
-  alignas(64) std::int32_t child[2 * kWidth];
+  alignas(64) float entry[kWidth], exit[kWidth];
   const auto margin = hn::Set(d, visit.margin);
-  std::size_t met = 0;
+  std::uint32_t met = 0;  // bits of the boxes
   for (std::size_t i = 0; i < kWidth; i += hn::Lanes(d)) {
     auto begin = hn::Zero(d), end = hn::Set(d, visit.length);
     for (int axis = 0; axis < 3; ++axis) {
@@ -35,22 +34,25 @@ void open_node(const PieceBoxes::Node& node, PieceBoxes::Visit& visit) {
       begin = hn::Max(begin, hn::Min(a, b));
       end = hn::Min(end, hn::Max(a, b));
     }
-    const auto meets = hn::Le(begin, end);
-    hn::CompressStore(hn::Load(s, node.child + i), hn::RebindMask(s, meets), s, child + met);
-    hn::CompressStore(begin, meets, d, entry + met);
-    met += hn::CompressStore(end, meets, d, exit + met);
+    hn::Store(begin, d, entry + i);
+    hn::Store(end, d, exit + i);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::Le(begin, end), bits);
+    met |= static_cast<std::uint32_t>(bits[0] | bits[1] << 8) << i;
   }
   std::vector<BoxedPiece>& ahead = visit.ahead;
   std::size_t size = ahead.size() - 1;
-  ahead.resize(size + met);
-  for (std::size_t i = 0; i < met; ++i) {
+  ahead.resize(size + static_cast<std::size_t>(std::popcount(met)));
+  for (; met != 0; met &= met - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(met));
+    const BoxedPiece box{entry[i], exit[i], node.child[i]};
     std::size_t at = size++;
     for (; at > 0; --at) {
       const BoxedPiece& nearer = ahead[at - 1];
-      if (nearer.entry > entry[i] || (nearer.entry == entry[i] && nearer.piece > child[i])) break;
+      if (nearer.entry > box.entry || (nearer.entry == box.entry && nearer.piece > box.piece)) break;
       ahead[at] = nearer;
     }
-    ahead[at] = {entry[i], exit[i], child[i]};
+    ahead[at] = box;
   }
 }
 
