@@ -332,44 +332,51 @@ HWY_INLINE Value enter_box(const compiler::Box& box, const Value* origin, const 
   return hn::IfThenElse(hn::Le(begin, end), begin, all(std::numeric_limits<double>::infinity()));
 }
 
+HWY_INLINE Entered enter_piece(const ScannedPiece& scanned, const WorldRays& world) {
+  return enter(scanned.forms, world, [&](std::size_t form) HWY_ATTR {
+    const double* const numbers = &scanned.forms[form].linear[0][0];
+    const auto number = [&](std::size_t n) HWY_ATTR { return all(numbers[n]); };
+    const LocalRays local = world.in_solid(number, scanned.moved);
+    return local.parts_within(scanned.forms[form].shape,
+                              [&](int n) HWY_ATTR { return number(kSize + static_cast<std::size_t>(n)); });
+  });
+}
+
 void find_first_of(std::span<const ScannedPiece> pieces, const RayBlock& rays, std::size_t i, FirstMet& met) {
   const FormLanes d;
   const hn::Rebind<std::uint32_t, FormLanes> half;
   const hn::RebindToUnsigned<FormLanes> whole;
-  const Value none = all(std::numeric_limits<double>::infinity());
+  const Value none = all(kNoEnd);
   const WorldRays world(rays, i);
   const auto leaves = hn::PromoteTo(whole, hn::LoadU(half, rays.leaves + i));
+  const Value length = hn::Min(hn::LoadU(d, rays.length + i), all(1e300));
   Value t = none, slack = all(0), piece = all(FirstMet::kNone);
+  Value last = length;        // no entrance beyond matters
   Value edges[kMostScanned];  // where the pieces are entered at the earliest
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const ScannedPiece& scanned = pieces[k];
-    const Truth left = scanned.convex ? hn::RebindMask(d, hn::Eq(leaves, hn::Set(whole, k))) : hn::Lt(none, none);
-    if (scanned.forms.empty()) {
-      edges[k] = hn::IfThenElse(left, none, enter_box(scanned.box, world.origin, world.inverse));
-      continue;
-    }
-    const Entered entered = enter(scanned.forms, world, [&](std::size_t form) HWY_ATTR {
-      const double* const numbers = &scanned.forms[form].linear[0][0];
-      const auto number = [&](std::size_t n) HWY_ATTR { return all(numbers[n]); };
-      const LocalRays local = world.in_solid(number, scanned.moved);
-      return local.parts_within(scanned.forms[form].shape,
-                                [&](int n) HWY_ATTR { return number(kSize + static_cast<std::size_t>(n)); });
-    });
-    const Truth misses = hn::Or(left, entered.misses), enters = hn::AndNot(left, entered.enters);
+    edges[k] = enter_box(scanned.box, world.origin, world.inverse);
+    if (scanned.convex)
+      edges[k] = hn::IfThenElse(hn::RebindMask(d, hn::Eq(leaves, hn::Set(whole, scanned.number))), none, edges[k]);
+    const Truth met_box = hn::Le(edges[k], last);
+    if (scanned.forms.empty() || hn::AllFalse(d, met_box)) continue;
+    const Entered entered = enter_piece(scanned, world);
+    const Truth misses = hn::Or(hn::Not(met_box), entered.misses), enters = hn::And(met_box, entered.enters);
     edges[k] =
         hn::IfThenElse(misses, none, hn::IfThenElse(enters, hn::Sub(entered.t, entered.slack), entered.earliest));
     const Truth nearer = hn::And(enters, hn::Lt(entered.t, t));
     t = hn::IfThenElse(nearer, entered.t, t);
     slack = hn::IfThenElse(nearer, entered.slack, slack);
-    piece = hn::IfThenElse(nearer, all(static_cast<double>(k)), piece);
+    piece = hn::IfThenElse(nearer, all(static_cast<double>(scanned.number)), piece);
+    last = hn::Min(length, hn::Add(t, hn::Add(slack, slack)));
   }
-  const Value length = hn::Min(hn::LoadU(d, rays.length + i), all(1e300));
   piece = hn::IfThenElse(hn::Gt(hn::Sub(t, slack), length), all(FirstMet::kNone), piece);
-  const Value last = hn::Min(length, hn::Add(t, hn::Add(slack, slack)));
   auto others = hn::Zero(whole);
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Truth meets = hn::AndNot(hn::Eq(piece, all(static_cast<double>(k))), hn::Le(edges[k], last));
-    others = hn::Or(others, hn::IfThenElseZero(hn::RebindMask(whole, meets), hn::Set(whole, std::uint64_t{1} << k)));
+    const std::uint32_t number = pieces[k].number;
+    const Truth meets = hn::AndNot(hn::Eq(piece, all(static_cast<double>(number))), hn::Le(edges[k], last));
+    others =
+        hn::Or(others, hn::IfThenElseZero(hn::RebindMask(whole, meets), hn::Set(whole, std::uint64_t{1} << number)));
   }
   hn::StoreU(piece, d, met.piece + i);
   hn::StoreU(t, d, met.t + i);

@@ -50,6 +50,7 @@ struct ScannedPiece {
   compiler::Box box;
   bool moved;   // the forms are not turned, only moved
   bool convex;  // a ray that leaves it does not meet it again
+  std::uint32_t number;
 };
 
 // Maximum number of pieces that are scanned for.
@@ -65,7 +66,8 @@ struct FirstMet {
   std::uint64_t others[RayBlock::kPadded];
 };
 
-// Finds what the rays from `first` on may meet first. They begin outside all pieces. At most kMostScanned.
+// Finds what the rays from `first` on may meet first. They begin outside all pieces. At most kMostScanned pieces, in
+// any order; fastest if those that most rays meet come first.
 void find_first(std::span<const ScannedPiece> pieces, const RayBlock& rays, std::size_t first, FirstMet& met);
 
 }  // namespace fathom::runtime

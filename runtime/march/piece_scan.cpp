@@ -3,22 +3,32 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 
 #include "runtime/march/clip.h"
 
 namespace fathom::runtime {
+namespace {
+
+double size_of(const compiler::Box& box) {
+  const glm::dvec3 sides = glm::min(box.hi - box.lo, 1e30);
+  return sides.x * sides.y + sides.y * sides.z + sides.z * sides.x;
+}
+
+}  // namespace
 
 PieceScan::PieceScan(const Pieces& pieces)
     : pieces_(pieces),
       roots_(pieces.templates.size()),
       entering_(pieces.templates.size()),
       found_(RayBlock::kCapacity) {
-  for (std::size_t i = 0; i < pieces.fields.size(); ++i) {
+  for (std::uint32_t i = 0; i < pieces.fields.size(); ++i) {
     const auto forms = pieces.forms_of(i);
     const bool moved =
         std::ranges::all_of(forms, [](const compiler::ClosedForm& form) { return form.linear == glm::dmat3(1.0); });
-    scanned_.push_back({forms, pieces.fields[i].bound, moved, pieces.templates[pieces.template_of[i]].convex});
+    scanned_.push_back({forms, pieces.fields[i].bound, moved, pieces.templates[pieces.template_of[i]].convex, i});
   }
+  std::ranges::stable_sort(scanned_, std::greater<>(), [](const ScannedPiece& piece) { return size_of(piece.box); });
 }
 
 std::size_t PieceScan::scan(const RayBlock& rays, std::size_t first, vm::Workspace& workspace) {
@@ -42,7 +52,9 @@ void PieceScan::sort_by_template(const RayBlock& rays, std::size_t first) {
 // Returns the bits of all pieces, without one that the ray leaves and does not meet again.
 std::uint64_t PieceScan::all_but_left(std::uint32_t leaves) const {
   const std::uint64_t all = (std::uint64_t{1} << scanned_.size()) - 1;
-  return leaves < scanned_.size() && scanned_[leaves].convex ? all & ~(std::uint64_t{1} << leaves) : all;
+  const bool stays_away =
+      leaves < pieces_.template_of.size() && pieces_.templates[pieces_.template_of[leaves]].convex;
+  return stays_away ? all & ~(std::uint64_t{1} << leaves) : all;
 }
 
 // Has the field confirm the entrances into pieces of one template.
@@ -85,7 +97,7 @@ void PieceScan::list(std::uint64_t pieces, glm::dvec3 origin, glm::dvec3 directi
   visit.ahead.clear();
   for (; pieces != 0; pieces &= pieces - 1) {
     const int piece = std::countr_zero(pieces);
-    const compiler::Box& box = scanned_[static_cast<std::size_t>(piece)].box;
+    const compiler::Box& box = pieces_.fields[static_cast<std::size_t>(piece)].bound;
     double begin = 0, end = length;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = (box.lo[axis] - origin[axis]) * inverse[axis],

@@ -48,7 +48,7 @@ class PieceScan {
   std::size_t confirm(const RayBlock& rays, std::uint32_t shared, vm::Workspace& workspace);
 
   const Pieces& pieces_;
-  std::vector<ScannedPiece> scanned_;                  // [piece]
+  std::vector<ScannedPiece> scanned_;                  // the largest first
   std::vector<std::unique_ptr<ProposedRoots>> roots_;  // [template]
   std::vector<std::vector<std::uint32_t>> entering_;   // [template] rays
   FirstMet met_;
