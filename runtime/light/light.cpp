@@ -62,6 +62,7 @@ void Lights::add_area_lights(const compiler::CompiledScene& scene, std::vector<L
     area_lights_.push_back({AreaLightShape(area_light), radiance, false});
     bounds.push_back(bounds_of(area_lights_.back().shape, radiance));
     has_area_lights_[area_light.surface] = true;
+    boxes_.push_back(area_lights_.back().shape.box().value_or(BoxLight{}));
   }
 }
 
@@ -136,71 +137,110 @@ Lights::SelectionProbabilities Lights::selection_probabilities(const LightSample
   return {share, rest * environment, rest * directional};
 }
 
-// Samples of the environment are drawn together.
+namespace {
+
+// The queries that are answered together, and their probabilities.
+struct ChosenQueries {
+  std::size_t count = 0;
+  std::array<std::size_t, LightQueries::kCapacity> query;
+  std::array<float, LightQueries::kCapacity> probability;
+
+  // Returns the new place.
+  std::size_t add(std::size_t i, float p) {
+    query[count] = i;
+    probability[count] = p;
+    return count++;
+  }
+};
+
+float share_of(float choice, float share) { return std::min(choice / share, 0x1.fffffep-1f); }
+
+}  // namespace
+
+// Samples of the environment are drawn together, and those of boxes.
 void Lights::sample(const LightQueries& queries, std::span<LightSample> samples) const {
   EnvironmentSamples beyond;
-  std::array<std::size_t, EnvironmentSamples::kCapacity> place;
-  std::array<float, EnvironmentSamples::kCapacity> probability;
-  std::size_t count = 0;
+  BoxLightRows boxes;
+  ChosenQueries of_beyond, of_boxes;
   for (std::size_t i = 0; i < queries.contexts.size(); ++i) {
     if (!queries.active[i]) continue;
+    samples[i] = {};
     const LightSampleContext& context = queries.contexts[i];
     const SelectionProbabilities share = selection_probabilities(context);
     const float rest = queries.choice[i] - share.near;
-    if (rest < 0 || rest >= share.environment) {
-      samples[i] = sample_others(context, share, queries.choice[i], {queries.u[i], queries.v[i]});
-      continue;
+    if (rest < 0) {
+      const std::optional<LightTree::SampledLight> chosen =
+          tree_.sample(context, share_of(queries.choice[i], share.near));
+      if (!chosen) continue;
+      const float probability = share.near * chosen->pmf;
+      if (chosen->light < area_lights_.size() && area_lights_[chosen->light].shape.box()) {
+        const std::size_t k = of_boxes.add(i, probability);
+        boxes.set(k, chosen->light, context.position);
+        boxes.u[k] = static_cast<double>(queries.u[i]);
+        boxes.v[k] = static_cast<double>(queries.v[i]);
+      } else {
+        samples[i] = sample_near(context, chosen->light, {queries.u[i], queries.v[i]});
+        samples[i].pdf *= probability;
+      }
+    } else if (rest < share.environment) {
+      const std::size_t k = of_beyond.add(i, share.environment);
+      beyond.context[k] = &context;
+      beyond.choice[k] = share_of(rest, share.environment);
+      beyond.u[k] = queries.u[i];
+      beyond.v[k] = queries.v[i];
+    } else if (rest - share.environment < share.directional) {  // the even part of the background is left to BSDFs
+      samples[i] = sample_directional(context, (rest - share.environment) / share.directional);
+      samples[i].pdf *= share.directional;
     }
-    beyond.context[count] = &context;
-    beyond.choice[count] = std::min(rest / share.environment, 0x1.fffffep-1f);
-    beyond.u[count] = queries.u[i];
-    beyond.v[count] = queries.v[i];
-    probability[count] = share.environment;
-    place[count++] = i;
   }
-  if (count == 0) return;
-  environment_.sample(count, beyond);
+  if (of_boxes.count > 0) {
+    sample_box_lights(boxes_, of_boxes.count, boxes);
+    for (std::size_t k = 0; k < of_boxes.count; ++k) {
+      const std::size_t i = of_boxes.query[k];
+      samples[i] = box_sample(queries.contexts[i], boxes, k);
+      samples[i].pdf *= of_boxes.probability[k];
+    }
+  }
+  if (of_beyond.count == 0) return;
+  environment_.sample(of_beyond.count, beyond);
   const DirectionRows& rows = beyond.rows;
-  for (std::size_t k = 0; k < count; ++k) {
-    LightSample& out = samples[place[k]] = {};
+  for (std::size_t k = 0; k < of_beyond.count; ++k) {
+    LightSample& out = samples[of_beyond.query[k]];
     out.wi = rows.direction_of(k);
     out.radiance = rows.radiance(k);
-    out.pdf = probability[k] * environment_.pdf(*beyond.context[k], out.wi, rows.density(k));
+    out.pdf = of_beyond.probability[k] * environment_.pdf(*beyond.context[k], out.wi, rows.density(k));
   }
 }
 
-LightSample Lights::sample_others(const LightSampleContext& context, const SelectionProbabilities& share,
-                                  float choice, glm::vec2 u) const {
-  if (choice < share.near) {
-    const std::optional<LightTree::SampledLight> chosen =
-        tree_.sample(context, std::min(choice / share.near, 0x1.fffffep-1f));
-    if (!chosen) return {};
-    const bool area_light = chosen->light < area_lights_.size();
-    LightSample out = area_light ? sample_area_light(context, chosen->light, u)
-                                 : sample_delta(context, near_delta_lights_[chosen->light - area_lights_.size()]);
-    out.pdf *= share.near * chosen->pmf;
-    return out;
-  }
-  const float rest = choice - share.near - share.environment;
-  if (!(rest < share.directional)) return {};  // the even part of the background is left to BSDF sampling
-  LightSample out = sample_directional(context, std::max(0.0f, rest) / share.directional);
-  out.pdf *= share.directional;
+LightSample Lights::sample_near(const LightSampleContext& context, std::uint32_t light, glm::vec2 u) const {
+  if (light >= area_lights_.size()) return sample_delta(context, near_delta_lights_[light - area_lights_.size()]);
+  const ShapeSample place = area_lights_[light].shape.sample(context.position, u);
+  if (!(place.pdf > 0)) return {};
+  const glm::dvec3 way = place.position - context.position;
+  LightSample out = area_light_sample(context, light, way, glm::length(way), place.pdf);
+  out.light_cosine = std::max(0.0f, -glm::dot(glm::vec3(place.normal), out.wi));
   return out;
 }
 
-LightSample Lights::sample_area_light(const LightSampleContext& context, std::uint32_t index, glm::vec2 u) const {
-  const DiffuseAreaLight& area_light = area_lights_[index];
-  const ShapeSample place = area_light.shape.sample(context.position, u);
-  if (!(place.pdf > 0)) return {};
-  if (area_light.touches_earlier && area_light_at(place.position) != index) return {};
-  const glm::dvec3 way = place.position - context.position;
+LightSample Lights::box_sample(const LightSampleContext& context, const BoxLightRows& rows, std::size_t k) const {
+  if (!(rows.pdf[k] > 0)) return {};
+  const auto light = static_cast<std::uint32_t>(rows.light[k]);
+  LightSample out = area_light_sample(context, light, rows.way_of(k), rows.distance[k], rows.pdf[k]);
+  out.light_cosine = static_cast<float>(rows.cosine[k]);
+  return out;
+}
+
+// All but the cosine.
+LightSample Lights::area_light_sample(const LightSampleContext& context, std::uint32_t light, glm::dvec3 way,
+                                      double distance, double pdf) const {
+  const DiffuseAreaLight& area_light = area_lights_[light];
+  if (!(distance > 0)) return {};
+  if (area_light.touches_earlier && area_light_at(context.position + way) != light) return {};
   LightSample out;
-  out.distance = glm::length(way);
-  if (!(out.distance > 0)) return {};
-  out.wi = glm::vec3(way / out.distance);
+  out.distance = distance;
+  out.wi = glm::vec3(way / distance);
   out.radiance = area_light.radiance;
-  out.pdf = static_cast<float>(place.pdf);
-  out.light_cosine = std::max(0.0f, -glm::dot(glm::vec3(place.normal), out.wi));
+  out.pdf = static_cast<float>(pdf);
   out.material = area_light.shape.area_light().material;
   out.surface = area_light.shape.area_light().surface;
   return out;

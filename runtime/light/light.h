@@ -103,15 +103,17 @@ class Lights {
   std::optional<std::uint32_t> area_light_at(glm::dvec3 place) const;
   float directional_importance(const DeltaLight& delta, const LightSampleContext& context) const;
   SelectionProbabilities selection_probabilities(const LightSampleContext& context) const;
-  // Samples lights other than the environment.
-  LightSample sample_others(const LightSampleContext& context, const SelectionProbabilities& share, float choice,
-                            glm::vec2 u) const;
-  LightSample sample_area_light(const LightSampleContext& context, std::uint32_t area_light, glm::vec2 u) const;
+  // Samples a light that is neither a box nor beyond the scene.
+  LightSample sample_near(const LightSampleContext& context, std::uint32_t light, glm::vec2 u) const;
+  LightSample box_sample(const LightSampleContext& context, const BoxLightRows& rows, std::size_t k) const;
+  LightSample area_light_sample(const LightSampleContext& context, std::uint32_t light, glm::dvec3 way,
+                                double distance, double pdf) const;
   LightSample sample_delta(const LightSampleContext& context, const DeltaLight& delta) const;
   LightSample sample_directional(const LightSampleContext& context, float choice) const;
 
   Environment environment_;
   std::vector<DiffuseAreaLight> area_lights_;
+  std::vector<BoxLight> boxes_;                // [area light]; used for boxes and rectangles
   std::vector<bool> has_area_lights_;          // [surface]
   std::vector<DeltaLight> near_delta_lights_;  // in the tree numbered after the area lights
   std::vector<DeltaLight> directional_;

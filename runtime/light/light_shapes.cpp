@@ -9,7 +9,6 @@
 #include "runtime/base/angle.h"
 #include "runtime/light/area_light_sampling.h"
 #include "runtime/light/curved_area_lights.h"
-#include "runtime/light/spherical_rectangle.h"
 
 namespace fathom::runtime {
 namespace {
@@ -18,52 +17,31 @@ using compiler::AreaLight;
 using glm::dvec2;
 using glm::dvec3;
 
-// --- boxes
+// --- boxes, and rectangles as boxes of which two faces are sampled
 
-// The face across each axis on the side of `from`, with weight 0 if `from` is within the box's slab. The weights are
-// near the solid angles, up to the half sphere's. Only the density on the chosen face has to be exact.
-struct BoxFaces {
-  BoxFaces(dvec3 from, dvec3 half) {
-    for (int i = 0; i < 3; ++i) {
-      const double z = std::abs(from[i]) - half[i];
-      if (!(z > 0)) continue;
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      const double d2 = z * z + from[j] * from[j] + from[k] * from[k], flat = 4 * half[j] * half[k] * z;
-      parts.weights[static_cast<std::size_t>(i)] = 1 / (d2 * std::sqrt(d2) / flat + 1 / (2 * kPi));
-    }
-  }
-  static SphericalRectangle face(dvec3 from, dvec3 half, int axis) {
-    const int j = (axis + 1) % 3, k = (axis + 2) % 3;
-    return {-half[j] - from[j], half[j] - from[j], -half[k] - from[k], half[k] - from[k],
-            std::abs(from[axis]) - half[axis]};
-  }
-  DiscreteDistribution<3> parts;
-};
-
-ShapeSample sample_box(dvec3 from, dvec3 half, dvec2 u) {
-  const BoxFaces faces(from, half);
-  if (!(faces.parts.sum() > 0)) return {};
-  const std::size_t part = faces.parts.sample(u.x);
-  const int axis = static_cast<int>(part), j = (axis + 1) % 3, k = (axis + 2) % 3;
-  const SphericalRectangle::Sample place = BoxFaces::face(from, half, axis).sample(u);
-  ShapeSample out;
-  out.normal[axis] = from[axis] > 0 ? 1 : -1;
-  out.position[axis] = out.normal[axis] * half[axis];
-  out.position[j] = from[j] + place.at.x;
-  out.position[k] = from[k] + place.at.y;
-  out.pdf = faces.parts.pmf(part) * place.pdf;
-  return out;
+BoxLight box_of(const AreaLight& area_light) {
+  const bool box = area_light.shape == AreaLight::Shape::Box;
+  const dvec3 lo = box ? -area_light.half_size : dvec3(area_light.corners[0], -area_light.radius);
+  const dvec3 hi = box ? area_light.half_size : dvec3(area_light.corners[2], area_light.radius);
+  return {area_light.rotation, area_light.translation, lo, hi, box ? dvec3(1) : dvec3(0, 0, 1)};
 }
 
-double box_pdf(dvec3 from, dvec3 half, dvec3 hit) {
-  int axis = 0;  // of the nearest face
-  for (int i = 1; i < 3; ++i) {
-    if (std::abs(hit[i]) - half[i] > std::abs(hit[axis]) - half[axis]) axis = i;
-  }
-  if (!(std::abs(from[axis]) > half[axis]) || (from[axis] > 0) != (hit[axis] > 0)) return 0;
-  const int across = (axis + 1) % 3;
-  return BoxFaces(from, half).parts.pmf(static_cast<std::size_t>(axis)) *
-         BoxFaces::face(from, half, axis).pdf(hit[across] - from[across]);
+ShapeSample sample_box(const BoxLight& box, dvec3 from, dvec2 u) {
+  BoxLightRows rows;
+  rows.set(0, 0, from);
+  rows.u[0] = u.x;
+  rows.v[0] = u.y;
+  sample_box_lights({&box, 1}, 1, rows);
+  const dvec3 way = rows.way_of(0), axis = box.rotation[static_cast<int>(rows.axis[0])];
+  return {from + way, glm::dot(axis, way) < 0 ? axis : -axis, rows.pdf[0]};
+}
+
+double box_pdf(const BoxLight& box, dvec3 from, dvec3 hit) {
+  BoxLightRows rows;
+  rows.set(0, 0, from);
+  for (int k = 0; k < 3; ++k) rows.way[k][0] = hit[k] - from[k];
+  set_box_light_pdfs({&box, 1}, 1, rows);
+  return rows.pdf[0];
 }
 
 // --- quads
@@ -90,23 +68,10 @@ bool inside_quad(const AreaLight& quad, dvec2 p) {
   return true;
 }
 
-// Returns the face towards `from`. The area light's x axis lies along the first side.
-SphericalRectangle face_of(const AreaLight& quad, dvec3 from) {
-  const dvec2 lo = quad.corners[0], hi = quad.corners[2];
-  return {lo.x - from.x, hi.x - from.x, lo.y - from.y, hi.y - from.y, std::abs(from.z) - quad.radius};
-}
-
-ShapeSample sample_quad(const AreaLight& quad, bool rectangle, dvec3 from, dvec2 u) {
+ShapeSample sample_quad(const AreaLight& quad, dvec3 from, dvec2 u) {
   if (!(std::abs(from.z) > quad.radius)) return {};
   const double side = from.z > 0 ? 1 : -1;
   ShapeSample out{dvec3(0, 0, side * quad.radius), dvec3(0, 0, side)};
-  if (rectangle) {
-    const SphericalRectangle::Sample place = face_of(quad, from).sample(u);
-    out.position.x = from.x + place.at.x;
-    out.position.y = from.y + place.at.y;
-    out.pdf = place.pdf;
-    return out;
-  }
   const std::array<dvec2, 4>& c = quad.corners;
   const DiscreteDistribution<2> halves{{cross2(c[1] - c[0], c[2] - c[0]), cross2(c[2] - c[0], c[3] - c[0])}};
   const std::size_t half = halves.sample(u.x);
@@ -119,11 +84,10 @@ ShapeSample sample_quad(const AreaLight& quad, bool rectangle, dvec3 from, dvec2
   return out;
 }
 
-double quad_pdf(const AreaLight& quad, bool rectangle, dvec3 from, dvec3 hit) {
+double quad_pdf(const AreaLight& quad, dvec3 from, dvec3 hit) {
   if (!(std::abs(from.z) > quad.radius) || (from.z > 0) != (hit.z > 0)) return 0;
   if (!inside_quad(quad, dvec2(hit))) return 0;
-  if (!rectangle) return area_to_solid_angle({hit, dvec3(0, 0, from.z > 0 ? 1 : -1)}, from, quad_area(quad));
-  return face_of(quad, from).pdf(hit.x - from.x);
+  return area_to_solid_angle({hit, dvec3(0, 0, from.z > 0 ? 1 : -1)}, from, quad_area(quad));
 }
 
 double quad_distance(const AreaLight& quad, dvec3 p) {
@@ -140,7 +104,8 @@ double quad_distance(const AreaLight& quad, dvec3 p) {
 }  // namespace
 
 AreaLightShape::AreaLightShape(const AreaLight& area_light) : area_light_(area_light) {
-  rectangle_ = area_light.shape == AreaLight::Shape::Quad && is_rectangle(area_light);
+  const bool quad = area_light.shape == AreaLight::Shape::Quad;
+  if (quad ? is_rectangle(area_light) : area_light.shape == AreaLight::Shape::Box) box_ = box_of(area_light);
 }
 
 dvec3 AreaLightShape::to_local(dvec3 p) const {
@@ -148,14 +113,12 @@ dvec3 AreaLightShape::to_local(dvec3 p) const {
 }
 
 ShapeSample AreaLightShape::sample(dvec3 from, glm::vec2 u) const {
+  if (box_) return sample_box(*box_, from, dvec2(u));
   const dvec3 local = to_local(from);
   ShapeSample out;
   switch (area_light_.shape) {
     case AreaLight::Shape::Sphere:
       out = sample_ball(local, dvec3(0), area_light_.radius, dvec2(u));
-      break;
-    case AreaLight::Shape::Box:
-      out = sample_box(local, area_light_.half_size, dvec2(u));
       break;
     case AreaLight::Shape::Cylinder:
       out = sample_cylinder(area_light_, local, dvec2(u));
@@ -163,8 +126,9 @@ ShapeSample AreaLightShape::sample(dvec3 from, glm::vec2 u) const {
     case AreaLight::Shape::Capsule:
       out = sample_capsule(area_light_, local, dvec2(u));
       break;
+    case AreaLight::Shape::Box:
     case AreaLight::Shape::Quad:
-      out = sample_quad(area_light_, rectangle_, local, dvec2(u));
+      out = sample_quad(area_light_, local, dvec2(u));
   }
   out.position = area_light_.rotation * out.position + area_light_.translation;
   out.normal = area_light_.rotation * out.normal;
@@ -172,18 +136,18 @@ ShapeSample AreaLightShape::sample(dvec3 from, glm::vec2 u) const {
 }
 
 double AreaLightShape::pdf(dvec3 from, dvec3 hit) const {
+  if (box_) return box_pdf(*box_, from, hit);
   const dvec3 p = to_local(from), q = to_local(hit);
   switch (area_light_.shape) {
     case AreaLight::Shape::Sphere:
       return glm::dot(q, p - q) > 0 ? ball_pdf(p, dvec3(0), area_light_.radius) : 0;
-    case AreaLight::Shape::Box:
-      return box_pdf(p, area_light_.half_size, q);
     case AreaLight::Shape::Cylinder:
       return cylinder_pdf(area_light_, p, q);
     case AreaLight::Shape::Capsule:
       return capsule_pdf(area_light_, p, q);
+    case AreaLight::Shape::Box:
     case AreaLight::Shape::Quad:
-      return quad_pdf(area_light_, rectangle_, p, q);
+      return quad_pdf(area_light_, p, q);
   }
   return 0;
 }

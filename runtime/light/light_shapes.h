@@ -3,7 +3,7 @@
 //
 //   sphere    the cone around it: Shirley, Wang, Zimmerman, "Monte Carlo Techniques for Direct Lighting
 //             Calculations", 1996
-//   box       the faces towards the shading point, each nearly by solid angle (spherical_rectangle.h)
+//   box       the faces towards the shading point, each nearly by solid angle (box_light_lanes.h)
 //   quad      the face on the shading point's side: a rectangle nearly by solid angle, another quad by area. Its
 //             rounded edges are not sampled
 //   cylinder  the cap and the part of the side that face the shading point, by area
@@ -14,8 +14,10 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "compiler/scene/compiled_scene.h"
+#include "runtime/light/box_light_lanes.h"
 #include "runtime/light/shape_sample.h"
 
 namespace fathom::runtime {
@@ -37,12 +39,14 @@ class AreaLightShape {
   double radius() const;                                   // of a ball around the centre that contains the area light
   double area() const;                                     // of the whole surface; for a quad, of one face
   const compiler::AreaLight& area_light() const { return area_light_; }
+  // The box to sample, if the light is a box or a rectangle.
+  const std::optional<BoxLight>& box() const { return box_; }
 
  private:
   glm::dvec3 to_local(glm::dvec3 p) const;
 
   compiler::AreaLight area_light_;
-  bool rectangle_ = false;  // the area light is a quad and a rectangle
+  std::optional<BoxLight> box_;
 };
 
 }  // namespace fathom::runtime

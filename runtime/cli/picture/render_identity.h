@@ -13,7 +13,7 @@ namespace fathom::cli {
 
 // Version of the renderer's output. Films of different versions belong to different renders. Raise the number with
 // every change to the bits of an image: tests/runtime/renderer_bits_test.cpp fails until then.
-inline constexpr int kRendererBits = 16;
+inline constexpr int kRendererBits = 17;
 
 // Row of the identity that has the number of a sequence's frame.
 inline constexpr const char* kFrameRow = "frame";

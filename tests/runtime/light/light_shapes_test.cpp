@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -155,6 +156,42 @@ TEST_CASE("light shapes: P5, polygons give Lambert's sum over edges", "[light]")
       CAPTURE(skew, local.x, e.value, truth);
       CHECK(std::abs(e.value - truth) < 4 * e.error);
       CHECK(e.error < 0.02 * truth);
+    }
+  }
+}
+
+// Lanes take the numbers of one light from a register, and those of several from memory.
+TEST_CASE("light shapes: boxes sampled together are sampled as each alone", "[light]") {
+  std::vector<AreaLightShape> shapes;
+  std::vector<BoxLight> boxes;
+  for (const test::NamedAreaLight& c : test::kAreaLights) {
+    const AreaLightShape shape(c.area_light);
+    if (!shape.box()) continue;
+    shapes.push_back(shape);
+    boxes.push_back(*shape.box());
+  }
+  REQUIRE(boxes.size() > 2);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{13}, BoxLightRows::kCapacity}) {
+    BoxLightRows rows;
+    std::vector<ShapeSample> alone;
+    for (std::size_t i = 0; i < count; ++i) {
+      Sampler sampler(3, static_cast<std::uint32_t>(i), 0, 0);
+      const dvec3 from = test::kShadingPoints[i % std::size(test::kShadingPoints)];
+      const glm::vec2 u = sampler.next2();
+      rows.set(i, i % boxes.size(), from);
+      rows.u[i] = static_cast<double>(u.x);
+      rows.v[i] = static_cast<double>(u.y);
+      alone.push_back(shapes[i % boxes.size()].sample(from, u));
+    }
+    sample_box_lights(boxes, count, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      const dvec3 from(rows.from[0][i], rows.from[1][i], rows.from[2][i]);
+      CAPTURE(count, i);
+      CHECK(rows.pdf[i] == alone[i].pdf);
+      if (!(alone[i].pdf > 0)) continue;
+      CHECK(from + rows.way_of(i) == alone[i].position);
+      CHECK(std::abs(rows.distance[i] / glm::length(rows.way_of(i)) - 1) < 1e-12);
+      CHECK(std::abs(rows.cosine[i] + glm::dot(alone[i].normal, rows.way_of(i)) / rows.distance[i]) < 1e-12);
     }
   }
 }
